@@ -19,8 +19,9 @@ from numpy.typing import NDArray
 
 import sprung
 from sprung.planning import CramerRaoBound, MeasurementSetup, PlannedDrop, PlannedTest
+from sprung.simulation import USUAL_NOISE, default_sensors
 from sprung.uncertainty import NORMAL_95, KnownValue
-from sprung.vehicle import PARAMETERS, Item, Load, Vehicle, evaluate_quantity, parameter_name, parameter_of
+from sprung.vehicle import PARAMETERS, Item, Load, Sensor, Vehicle, evaluate_quantity, parameter_name, parameter_of
 
 Real = NDArray[np.float64]
 
@@ -39,14 +40,14 @@ AXLES = ("front_axle_mass", "rear_axle_mass")
 
 WITH_LOAD = ", with and without load"
 
-Measure = Callable[[Real, float, np.random.Generator], Real]
-"""What sensors make of a record without noise: record (channel, time), noise level, m/s², and where noise comes from."""
+Measure = Callable[[Real, Real | float, np.random.Generator], Real]
+"""What sensors make of a record without noise: record (channel, time), noise levels, SI (channel, 1), source of noise."""
 
 
-def white(record: Real, level: float, random: np.random.Generator) -> Real:
+def white(record: Real, levels: Real | float, random: np.random.Generator) -> Real:
     """Add white noise, drawn as `sprung.simulate` draws it."""
     random.standard_normal(len(record))  # the zero-g offsets, of which there are none
-    return record + level * random.standard_normal(record.shape)
+    return record + levels * random.standard_normal(record.shape)
 
 
 def ballast(vehicle: Vehicle) -> Load:
@@ -64,10 +65,20 @@ def ballast(vehicle: Vehicle) -> Load:
     return Load(name="ballast", items=items)
 
 
+Sensors = tuple[Sensor, ...] | None
+"""The sensors of a test; None for an accelerometer at each corner and on each wheel."""
+
+
 @lru_cache(maxsize=32)
-def _without_noise(vehicle: Vehicle, loaded: bool) -> sprung.Campaign:
+def _without_noise(vehicle: Vehicle, loaded: bool, sensors: Sensors) -> sprung.Campaign:
     loads = [ballast(vehicle)] if loaded else []
-    return sprung.simulate(vehicle, loads=loads, rate=RATE, noise=0.0, duration=DURATION, rest=REST)
+    return sprung.simulate(vehicle, sensors=sensors, loads=loads, rate=RATE, noise=0.0, duration=DURATION, rest=REST)
+
+
+def _levels(vehicle: Vehicle, sensors: Sensors, noise: float) -> Real:
+    """Return the noise of each channel, SI root-mean-square: that of accelerometers, of others as much above what is usual."""
+    usual = [USUAL_NOISE[sensor.quantity] for sensor in sensors or default_sensors(vehicle)]
+    return noise / USUAL_NOISE["acceleration"] * np.array(usual)
 
 
 @dataclass(frozen=True)
@@ -86,6 +97,8 @@ class Case:
         m/s² root-mean-square.
     measure
         What sensors make of a record.
+    sensors
+        Of the test.
     """
 
     vehicle: Vehicle
@@ -93,6 +106,7 @@ class Case:
     weighed: tuple[str, ...]
     noise: float
     measure: Measure = white
+    sensors: Sensors = None
 
     @property
     def test(self) -> str:
@@ -106,12 +120,13 @@ class Case:
     @property
     def label(self) -> str:
         """All of it in words."""
-        return f"{self.vehicle.name}, {self.test}, {self.noise:g} m/s², {self.measure.__name__}"
+        channels = "".join(f", {sensor.channel}" for sensor in self.sensors or ())
+        return f"{self.vehicle.name}, {self.test}, {self.noise:g} m/s², {self.measure.__name__}{channels}"
 
     @property
     def drops(self) -> int:
         """How many drops there are."""
-        return len(_without_noise(self.vehicle, self.loaded).drops)
+        return len(_without_noise(self.vehicle, self.loaded, self.sensors).drops)
 
     @property
     def scaled(self) -> bool:
@@ -135,11 +150,9 @@ class Case:
 
     def campaign(self, number: int) -> sprung.Campaign:
         """Return one noisy campaign."""
-        clean, seed = _without_noise(self.vehicle, self.loaded), self.seed(number)
-        random = np.random.default_rng(seed)
-        recordings = tuple(
-            replace(one, values=self.measure(one.values, self.noise, random)) for one in clean.recordings
-        )
+        clean, seed = _without_noise(self.vehicle, self.loaded, self.sensors), self.seed(number)
+        random, levels = np.random.default_rng(seed), _levels(self.vehicle, self.sensors, self.noise)[:, None]
+        recordings = tuple(replace(one, values=self.measure(one.values, levels, random)) for one in clean.recordings)
         return replace(clean.with_recordings(recordings), known=self.known(np.random.default_rng([seed, 1])))
 
     @cached_property
@@ -221,28 +234,27 @@ class Trial(NamedTuple):
     drops: int
 
 
-def _measurement_setup(vehicle: Vehicle, noise: float, known: Mapping[str, KnownValue]) -> MeasurementSetup:
-    sensors = _without_noise(vehicle, False).sensors
+def _measurement_setup(case: Case, known: Mapping[str, KnownValue]) -> MeasurementSetup:
+    vehicle, sensors = case.vehicle, _without_noise(case.vehicle, False, case.sensors).sensors
     tape = {"wheelbase": KnownValue(vehicle.wheelbase)} if vehicle.layout.pitches else {}
     everything = {**tape, **known}
-    return MeasurementSetup(
-        vehicle, vehicle.tracks, (), everything, sensors, np.full(len(sensors), noise), RATE, DURATION
-    )
+    levels = _levels(vehicle, case.sensors, case.noise)
+    return MeasurementSetup(vehicle, vehicle.tracks, (), everything, sensors, levels, RATE, DURATION)
 
 
 @lru_cache(maxsize=256)
-def _information(vehicle: Vehicle, loaded: bool, noise: float, used: tuple[int, ...]) -> Real:
+def _information(case: Case, used: tuple[int, ...]) -> Real:
     """Return the information of drops, without weighings; shape (direction, direction)."""
-    clean = _without_noise(vehicle, loaded)
+    clean = _without_noise(case.vehicle, case.loaded, case.sensors)
     drops = (clean.drops[i] for i in used)
     planned = tuple(PlannedDrop(clean.load(one.load), one.wheels, float(one.height or 0)) for one in drops)
-    return PlannedTest(_measurement_setup(vehicle, noise, {}), planned).information
+    return PlannedTest(_measurement_setup(case, {}), planned).information
 
 
 @lru_cache(maxsize=1024)
 def _bound(case: Case, used: tuple[int, ...]) -> Real:
-    setup = _measurement_setup(case.vehicle, case.noise, case.known())
-    information = _information(case.vehicle, case.loaded, case.noise, used)
+    setup = _measurement_setup(case, case.known())
+    information = _information(replace(case, weighed=()), used)
     covariance = CramerRaoBound(setup, information + PlannedTest(setup, ()).known_information).covariance
     gradients = np.eye(len(setup.names))
     if not case.scaled:

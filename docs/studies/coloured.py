@@ -37,7 +37,7 @@ WANTED = 90.0
 TESTS: tuple[tuple[bool, tuple[str, ...]], ...] = ((True, ("total_mass",)), (False, AXLES))
 
 
-def low_passed(record: Real, level: float, random: np.random.Generator, rate: float = RATE) -> Real:
+def low_passed(record: Real, level: Real | float, random: np.random.Generator, rate: float = RATE) -> Real:
     """Add noise of the same power behind a first-order low-pass."""
     kept = np.exp(-1 / (rate * TIME_CONSTANT))
     before = int(20 * rate * TIME_CONSTANT)
@@ -46,13 +46,13 @@ def low_passed(record: Real, level: float, random: np.random.Generator, rate: fl
     return record + level * np.asarray(coloured, dtype=np.float64)[:, before:]
 
 
-def drifting(record: Real, level: float, random: np.random.Generator) -> Real:
+def drifting(record: Real, level: Real | float, random: np.random.Generator) -> Real:
     """Add white noise, and let every channel drift up or down."""
     way = random.choice([-1.0, 1.0], (record.shape[0], 1))
     return white(record, level, random) + DRIFT * way * np.linspace(0.0, 1.0, record.shape[1])
 
 
-def coarse(record: Real, level: float, random: np.random.Generator) -> Real:
+def coarse(record: Real, level: Real | float, random: np.random.Generator) -> Real:
     """Add white noise, and round to the logger's steps."""
     return STEP * np.round(white(record, level, random) / STEP)
 

@@ -109,17 +109,47 @@ def si_factor(text: str, quantity: Quantity = "acceleration") -> float:
 
 
 def quantity_name(quantity: Quantity) -> str:
-    """Return the name of a quantity in a sentence: ``angular rate``."""
+    """Return the name of a quantity in a sentence: ``angular rate``.
+
+    Parameters
+    ----------
+    quantity
+        What is measured.
+
+    Returns
+    -------
+    str
+    """
     return quantity.replace("-", " ")
 
 
 def si_symbol(quantity: Quantity) -> str:
-    """Return the SI unit of a quantity as it is printed: ``m/s²``."""
+    """Return the SI unit of a quantity as it is printed: ``m/s²``.
+
+    Parameters
+    ----------
+    quantity
+        What is measured.
+
+    Returns
+    -------
+    str
+    """
     return SI_UNITS[quantity].replace("^2", "²")
 
 
 def is_unit(text: str) -> bool:
-    """Whether a text is a unit of anything that sensors measure."""
+    """Whether a text is a unit of anything that sensors measure.
+
+    Parameters
+    ----------
+    text
+        As loggers write it.
+
+    Returns
+    -------
+    bool
+    """
     for quantity in UNITS:
         try:
             si_factor(text, quantity)

@@ -133,11 +133,13 @@ def body_motions(fit: FitStatistics, decays: Sequence[FreeDecay], sensors: Seque
 def body_rows(fit: FitStatistics, sensors: Sequence[Sensor]) -> Real:
     """Return the reading of each sensor per vertical, pitch and roll acceleration, shape (channel, 3).
 
-    Zero on wheels, and for a motion that the vehicle has not.
+    Zero on wheels, for what is no accelerometer, and for a motion that the vehicle has not.
     """
     body = layout_of(fit.names).body
     rows = np.zeros((len(sensors), 3))
-    rows[:, [FULL.body.index(one) for one in body]] = Readout.of(sensors, fit.names).at(fit.values)[:, : len(body)]
+    readout = Readout.of(sensors, fit.names)
+    accelerations = readout.of_accelerations(readout.at(fit.values))
+    rows[:, [FULL.body.index(one) for one in body]] = accelerations[:, : len(body)]
     on_body = np.array([sensor.on == "body" for sensor in sensors])
     return np.where(on_body[:, None], rows, 0.0)
 

@@ -180,4 +180,5 @@ def _channels(
             peak=float(peak[channel]) if np.isfinite(peak[channel]) else None,
             used=bool(used[channel]),
             faults=tuple(fault.code for fault in faults if fault.where == where),
+            quantity=sensor.quantity,
         )

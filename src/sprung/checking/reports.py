@@ -10,6 +10,7 @@ from sprung.checking.recorded import PlottedRecording
 from sprung.dataframes import require_pandas
 from sprung.display import shown
 from sprung.errors import Fault
+from sprung.units import Quantity, si_symbol
 from sprung.vehicle import SensorPlace, Wheel
 
 if TYPE_CHECKING:
@@ -45,10 +46,12 @@ class ChannelReport:
         The channel's.
     on
         What its sensor sits on: the body, or a wheel station; None for a wheel station that is not known.
+    quantity
+        What its sensor measures.
     noise
-        At rest on the blocks, m/s² root-mean-square; None where the recording shows no rest.
+        At rest on the blocks, SI root-mean-square; None where the recording shows no rest.
     peak
-        Largest reading from the release on, counted from the reading at rest (without one, from the mean), m/s²; None
+        Largest reading from the release on, counted from the reading at rest (without one, from the mean), SI; None
         where nothing of the channel can be read.
     used
         Whether the decay holds it.
@@ -62,6 +65,12 @@ class ChannelReport:
     peak: float | None
     used: bool
     faults: tuple[str, ...]
+    quantity: Quantity = "acceleration"
+
+    @property
+    def unit(self) -> str:
+        """SI unit of its readings, as it is printed."""
+        return si_symbol(self.quantity)
 
 
 @shown

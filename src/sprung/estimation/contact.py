@@ -41,11 +41,15 @@ _MOST = 0.5
 """Part of a decay that may be given up: a model to which tyres seem to hop for longer is not to be trusted in this."""
 
 
+Refit = Callable[[Sequence[FreeDecay], FitResult, Real], FitResult]
+"""Fits decays that begin elsewhere: from a fit and the {X, Ẋ} that it has where they begin, (drop, state)."""
+
+
 def fit_from_contact(
     decays: Sequence[FreeDecay],
     models: Mapping[str, LinearModel],
     first: FitResult,
-    again: Callable[[Sequence[FreeDecay], FitResult, Real], FitResult],
+    again: Refit,
 ) -> tuple[tuple[FreeDecay, ...], FitResult]:
     """Move the start of each decay to the last contact of its tyres in the fitted vehicle, and fit again until it stays.
 
@@ -70,20 +74,61 @@ def fit_from_contact(
     best, fit = tuple(decays), first
     settled = False
     for _ in range(_PASSES if first.is_reversible else 1):
-        shifts, states = _shifts(best, models, fit)
+        shifts = _shifts(best, models, fit)
         if not any(shifts):
             break
-        moved = tuple(decay.shifted(shift) for decay, shift in zip(best, shifts, strict=True))
-        refitted = again(moved, fit, states).after(fit)
-        if np.any(refitted.noise > _NO_WORSE * fit.noise):
-            break
+        moved, refitted = _refit(best, shifts, fit, again)
+        if not _is_as_good(refitted, fit):
+            # Where no sensor shows the landing, little is left of wheel hop in the first decays: their fit may see the last
+            # contact too early, and what it does not explain then is none.
+            if any(decay.events.landing is not None for decay in best):
+                break
+            shifts = _explained(best, shifts, fit)
+            if not any(shifts):
+                break
+            moved, refitted = _refit(best, shifts, fit, again)
+            if not _is_as_good(refitted, fit):
+                break
         best, fit, settled = moved, refitted, True
     return best, fit if settled else again(best, fit, fit.states).after(fit)
 
 
-def _shifts(decays: Sequence[FreeDecay], models: Mapping[str, LinearModel], fit: FitResult) -> tuple[list[int], Real]:
-    """Return the samples by which the start of each decay is to be moved, and {X, Ẋ} there, shape (drop, state)."""
-    shifts, states = [], fit.states.copy()
+def _refit(
+    decays: Sequence[FreeDecay], shifts: Sequence[int], fit: FitResult, again: Refit
+) -> tuple[tuple[FreeDecay, ...], FitResult]:
+    """Return decays with other starts, and their fit."""
+    states = fit.states.copy()
+    for drop, (decay, shift) in enumerate(zip(decays, shifts, strict=True)):
+        before = max(-shift, 0)
+        states[drop] = fit.motion(drop, before, max(min(shift + 1, decay.samples), 1))[:, 0 if before else -1]
+    moved = _shifted(decays, shifts)
+    return moved, again(moved, fit, states).after(fit)
+
+
+def _shifted(decays: Sequence[FreeDecay], shifts: Sequence[int]) -> tuple[FreeDecay, ...]:
+    return tuple(decay.shifted(shift) for decay, shift in zip(decays, shifts, strict=True))
+
+
+def _is_as_good(refitted: FitResult, fit: FitResult) -> bool:
+    return bool(np.all(refitted.noise <= _NO_WORSE * fit.noise))
+
+
+def _explained(decays: Sequence[FreeDecay], shifts: Sequence[int], fit: FitResult) -> list[int]:
+    """Return the shifts, halved until the fitted vehicle explains the longer decays as it explains the present ones."""
+    shifts = list(shifts)
+    allowed = _NO_WORSE**2 * (fit.residual_sums @ fit.weights) / [decay.samples for decay in decays]
+    while any(shift < 0 for shift in shifts):
+        moved = _shifted(decays, shifts)
+        found = (fit.residual_sums_of(moved) @ fit.weights) / [decay.samples for decay in moved]
+        if not np.any(worse := found > allowed):
+            break
+        shifts = [int(shift / 2) if bad else shift for shift, bad in zip(shifts, worse.tolist(), strict=True)]
+    return shifts
+
+
+def _shifts(decays: Sequence[FreeDecay], models: Mapping[str, LinearModel], fit: FitResult) -> list[int]:
+    """Return the samples by which the start of each decay is to be moved."""
+    shifts = []
     compressions = {load: _static_compression(models[load], fit.values) for load in {decay.load for decay in decays}}
     wheels = layout_of(fit.names).wheels_at
     for drop, decay in enumerate(decays):
@@ -94,10 +139,8 @@ def _shifts(decays: Sequence[FreeDecay], models: Mapping[str, LinearModel], fit:
         first = int(loose[-1]) + 1 + _interpolated(decay) if loose.size else 0
         landing = 0 if fit.is_reversible else _landing(decay, fit, drop)
         first = max(first, earlier + landing) if landing else first
-        shift = first - earlier if first - earlier < _MOST * samples else 0
-        shifts.append(shift)
-        states[drop] = motion[:, min(earlier + shift, motion.shape[1] - 1)]
-    return shifts, states
+        shifts.append(first - earlier if first - earlier < _MOST * samples else 0)
+    return shifts
 
 
 def _static_compression(model: LinearModel, values: Real) -> Real:

@@ -13,6 +13,7 @@ from sprung.errors import Fault
 from sprung.estimation import FitResult
 from sprung.faults.residual_table import is_explained
 from sprung.preprocess import FreeDecay, quantisation_variance
+from sprung.units import si_symbol
 from sprung.vehicle import Sensor
 
 Real = NDArray[np.float64]
@@ -63,7 +64,8 @@ def detect_drift(decays: Sequence[FreeDecay], optimum: FitResult, sensors: Seque
         Fault(
             "drift",
             sensors[channel].channel,
-            f"baseline drift of {_size(decays, slow[channel]):.2g} m/s² in a recording; nothing was changed",
+            f"baseline drift of {_size(decays, slow[channel]):.2g} {si_symbol(sensors[channel].quantity)} in a recording; "
+            "nothing was changed",
             "Let the sensor and the logger warm up before the test, and see that nothing strains the sensor's base.",
         )
         for channel in np.flatnonzero(walks).tolist()

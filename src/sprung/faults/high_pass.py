@@ -152,7 +152,8 @@ def score_corners(decays: Sequence[FreeDecay], optimum: FitResult, sensors: Sequ
         None where no sensor may be AC-coupled, or where the vehicle has forces that are not linear.
     """
     changes = [differentiate_by_cutoff(decay) for decay in decays]
-    open_ = np.flatnonzero(np.any([change.any(axis=1) for change in changes], axis=0)).tolist()
+    coupled = [sensor.reads_gravity or sensor.high_pass is not None for sensor in sensors]
+    open_ = np.flatnonzero(np.any([change.any(axis=1) for change in changes], axis=0) & coupled).tolist()
     if not open_ or not optimum.is_reversible:
         return None
     at, weights = optimum.iterate.at, optimum.weights

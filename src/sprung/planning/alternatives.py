@@ -6,14 +6,16 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from enum import IntEnum
 from functools import cached_property
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sprung.planning.cramer_rao import CramerRaoBound
 from sprung.planning.setup import PlannedDrop, PlannedTest
+from sprung.simulation import USUAL_NOISE
 from sprung.uncertainty import KnownValue
-from sprung.vehicle import EMPTY, WHEELS, Item, Load, Wheel, evaluate_quantity, parameter_name
+from sprung.vehicle import EMPTY, WHEELS, Item, Load, Sensor, Wheel, evaluate_quantity, parameter_name
 
 Real = NDArray[np.float64]
 
@@ -89,6 +91,8 @@ class Alternative:
         Additional quantities known beforehand.
     instead, rate
         Drops done in place of the test's own, if any, and samples per second in place of the planned ones.
+    sensors
+        Further sensors, with usual noise.
     test
         The test that it changes.
     """
@@ -102,11 +106,16 @@ class Alternative:
     known: Mapping[str, KnownValue] = field(default_factory=dict)
     instead: tuple[PlannedDrop, ...] | None = None
     rate: float | None = None
+    sensors: tuple[Sensor, ...] = ()
 
     @cached_property
     def added_information(self) -> Real:
         """Information in the additional drops, or in those done instead less that in the test's; (direction, direction)."""
         setup = self.test.setup
+        if self.sensors:
+            noise = [USUAL_NOISE[sensor.quantity] for sensor in self.sensors]
+            of_all = setup.information_with(self.sensors, noise, self.test.drops)
+            return of_all - self.test.information if self.test.recorded_information is None else of_all
         if self.instead is not None:
             return setup.drop_information(self.instead, self.rate) - self.test.information
         return setup.drop_information(self.added)
@@ -139,6 +148,7 @@ def list_alternatives(test: PlannedTest) -> Iterator[Alternative]:
     yield from _repeats(test)
     yield from _drops(test)
     yield from _loads(test)
+    yield from _further_sensors(test)
     for factor in QUIETER:
         part = "half" if factor == 2 else f"1/{factor} of"
         text = f"sensors with {part} the noise, every drop repeated"
@@ -202,6 +212,34 @@ def _loads(test: PlannedTest) -> Iterator[Alternative]:
         text = f"the same drops with a load of {100 * fraction:g} % of the total mass {where}"
         added = tuple(PlannedDrop(load, *way) for way in ways)
         yield Alternative(f"+ {100 * fraction:g} % {label}", text, test, Cost.LOAD, added=added)
+
+
+def _further_sensors(test: PlannedTest) -> Iterator[Alternative]:
+    """Yield further sensors with which the drops are done again, or once: suspension travel by axle, and gyroscopes."""
+    setup, layout = test.setup, test.setup.vehicle.layout
+    measured = {sensor.relative_to for sensor in setup.sensors} | {
+        sensor.axis for sensor in setup.sensors if sensor.quantity == "angular-rate"
+    }
+    travels = {
+        wheel: Sensor(channel=f"travel {wheel}", on="body", quantity="displacement", relative_to=wheel)
+        for wheel in layout.wheels
+        if wheel not in measured
+    }
+    ends = {"f": "front ", "r": "rear ", "": ""}
+    for axle in layout.axles:
+        own = tuple(travels[wheel] for wheel in layout.wheels_of(axle) if wheel in travels)
+        if own:
+            text = f"measuring {ends[axle]}suspension travel as well"
+            yield Alternative(f"+ {ends[axle]}travel", text, test, Cost.SENSORS, sensors=own)
+    turns: dict[Literal["pitch", "roll"], bool] = {"pitch": layout.pitches, "roll": layout.rolls}
+    gyroscopes = tuple(
+        Sensor(channel=f"{axis} rate", on="body", quantity="angular-rate", axis=axis)
+        for axis, does in turns.items()
+        if does and axis not in measured
+    )
+    if gyroscopes:
+        text = "measuring the body's angular rates as well"
+        yield Alternative("+ gyroscopes", text, test, Cost.SENSORS, sensors=gyroscopes)
 
 
 def _other_tests(test: PlannedTest) -> Iterator[Alternative]:

@@ -153,6 +153,18 @@ class MeasurementSetup:
         slopes = by_coordinate @ self.free
         return slopes.T @ slopes
 
+    def with_sensors(self, sensors: Sequence[Sensor], noise: Sequence[float]) -> MeasurementSetup:
+        """Return the same measurement with further sensors.
+
+        Parameters
+        ----------
+        sensors
+            The sensors.
+        noise
+            Of each, SI root-mean-square.
+        """
+        return replace(self, sensors=(*self.sensors, *sensors), noise=np.append(self.noise, noise))
+
     def drop_information(self, drops: Sequence[PlannedDrop], rate: float | None = None) -> Real:
         """Return the Fisher information in drops, each done once.
 
@@ -173,15 +185,49 @@ class MeasurementSetup:
         InputError
             If the vehicle cannot be dropped so, or does not come to rest on its tyres in time.
         """
+        return self.free.T @ self._coordinate_information(drops, rate or self.rate) @ self.free
+
+    def information_with(self, sensors: Sequence[Sensor], noise: Sequence[float], drops: Sequence[PlannedDrop]) -> Real:
+        """Return the Fisher information in drops that further sensors record too; what is uncertain of these is eliminated.
+
+        Parameters
+        ----------
+        sensors, noise
+            As for `with_sensors`.
+        drops
+            The drops.
+
+        Returns
+        -------
+        ndarray
+            Shape (direction, direction).
+
+        Raises
+        ------
+        InputError
+            As for `drop_information`.
+        """
+        larger = self.with_sensors(sensors, noise)
+        information = larger._coordinate_information(drops, self.rate)
+        known = {name: one for name, one in larger.statements.items() if name not in self.statements}
+        _, by_coordinate = PriorsAndConstraints(larger.priors.coordinates, known).residuals(larger.u)
+        information = information + by_coordinate.T @ by_coordinate
+        order = [larger.names.index(name) for name in (*self.names, *known)]
+        kept = len(self.names)
+        information = information[np.ix_(order, order)]
+        across, own = information[kept:, :kept], information[kept:, kept:]
+        information = information[:kept, :kept] - across.T @ np.linalg.solve(own, across)
+        return self.free.T @ information @ self.free
+
+    def _coordinate_information(self, drops: Sequence[PlannedDrop], sampling: float) -> Real:
+        """Return the Fisher information in drops, shape (coordinate, coordinate)."""
         if not drops:
-            return np.zeros((self.free.shape[1],) * 2)
-        sampling = rate or self.rate
+            return np.zeros((len(self.u),) * 2)
         names = _load_names(drops)
         decays = [self._decay(drop, names[drop.load], sampling) for drop in drops]
         weights = self.rate / sampling / self.noise**2
         of_parameters = self._objective(decays, names).at(self.values, weights).information
-        directions = self.slopes[:, None] * self.free
-        information: Real = directions.T @ of_parameters @ directions / self.inflation
+        information: Real = self.slopes[:, None] * of_parameters * self.slopes / self.inflation
         return information
 
     def unexplained(self, drops: Sequence[PlannedDrop], alternatives: Sequence[Sequence[Real]]) -> Real:

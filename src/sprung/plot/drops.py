@@ -43,7 +43,7 @@ def fit(
     series = result.series[check_name(drop, list(result.series), "drop")]
     if channels is not None:
         names = [check_name(name, series.channels, "channel") for name in channels]
-        return draw(channels_picture(drop, series, names), axes)
+        return draw(channels_picture(drop, series, names, result.setup.units), axes)
     return draw(motion_picture(drop, series, result.validation[drop]), axes)
 
 

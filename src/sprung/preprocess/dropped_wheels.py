@@ -76,7 +76,7 @@ def _lowered_wheels(recording: Recording, release: Release, sensors: Sequence[Se
         if sensor.wheel is not None and sensor.quantity == "displacement" and recording.usable[channel]
     }
     most = max(lowered.values(), default=0.0)
-    return {wheel: fell > most / 2 for wheel, fell in lowered.items()} if most > _LOWEST_BLOCKS else {}
+    return {wheel: height > most / 2 for wheel, height in lowered.items()} if most > _LOWEST_BLOCKS else {}
 
 
 def find_contradicted_drops(drops: Sequence[Drop], dropped: Sequence[Dropped]) -> tuple[int, ...]:

@@ -26,8 +26,11 @@ _SHORTEST = 0.5
 _TYPICAL_WHEELBASE = 2.7
 """m, where neither the campaign nor the sensors' positions give it."""
 
-_LOW_BLOCKS, _HOPPING = 0.1, 0.25
-"""Height of blocks that is not stated, m; and two periods of the slowest usual wheel hop, s."""
+_LOWEST_BLOCKS, _HIGHEST_BLOCKS, _HOPPING = 0.02, 0.1, 0.25
+"""Heights of blocks that are not stated, m; and two periods of the slowest usual wheel hop, s."""
+
+_FASTEST_FALL = 160.0
+"""Acceleration of a wheel that falls, m/s², gravity and its spring together: of a light wheel under a heavy body."""
 
 _CLIPPED = 0.6
 """s after the release up to which clipping only delays the decay; a channel that clips for longer is left out."""
@@ -159,8 +162,9 @@ def _find_start(
         return Landing(given, given, "given as start")
     if release is None:
         return Landing(0, 0, "no release was found, so the first sample")
-    fall = np.sqrt(2 * (drop.height or _LOW_BLOCKS) / STANDARD_GRAVITY)
-    possible = release.sample + int(fall * recording.rate)
+    fall = np.sqrt(2 * (drop.height or _HIGHEST_BLOCKS) / STANDARD_GRAVITY)
+    fastest = np.sqrt(2 * (drop.height or _LOWEST_BLOCKS) / _FASTEST_FALL)
+    possible = release.sample + int(fastest * recording.rate)
     typical = release.sample + int((fall + _HOPPING) * recording.rate)
     wheelbase = _wheelbase(campaign)
     landing = detect_landing(

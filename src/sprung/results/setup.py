@@ -15,6 +15,7 @@ from sprung.campaign import Campaign, ModelChoice, SourceFile, TestRecord
 from sprung.display import shown
 from sprung.estimation import FitStatistics, estimate_of
 from sprung.uncertainty import Estimate, KnownValue
+from sprung.units import si_symbol
 from sprung.vehicle import DERIVED, Load, Sensor
 
 _LIBRARIES = ("numpy", "scipy")
@@ -83,6 +84,24 @@ class Setup:
     software: dict[str, str]
     test: TestRecord = field(default_factory=TestRecord)
     motion_ratio: dict[str, KnownValue] = field(default_factory=dict)
+
+    @property
+    def units(self) -> dict[str, str]:
+        """SI unit of the readings of each channel, as it is printed."""
+        return {sensor.channel: si_symbol(sensor.quantity) for sensor in self.sensors}
+
+    def describe_noise(self, noise: Mapping[str, float]) -> tuple[str, str]:
+        """Return what the noise of channels is counted in, and each channel with its noise.
+
+        Parameters
+        ----------
+        noise
+            SI root-mean-square, by channel.
+        """
+        units = dict.fromkeys(self.units.values())
+        shared = f"{next(iter(units))} " if len(units) == 1 else ""
+        behind = {channel: "" if shared else f" {unit}" for channel, unit in self.units.items()}
+        return f"noise, {shared}rms", ", ".join(f"{name} {level:.3g}{behind[name]}" for name, level in noise.items())
 
 
 def setup_of(

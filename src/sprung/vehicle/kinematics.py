@@ -75,7 +75,15 @@ class Row:
         return Row(_combine(self.constant, other.constant, -1.0), slopes)
 
     def times(self, name: str, factor: float) -> Row:
-        """Return the row, if no parameter is in it, times a parameter and a factor: the force of a spring by its rate."""
+        """Return the row, if no parameter is in it, times a parameter and a factor: the force of a spring by its rate.
+
+        Parameters
+        ----------
+        name
+            Of the parameter.
+        factor
+            Dimensionless.
+        """
         return Row({}, {name: {coordinate: factor * value for coordinate, value in self.constant.items()}})
 
     def referred_to_front_axle(self, wheelbase: float) -> Row:

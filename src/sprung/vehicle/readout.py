@@ -135,7 +135,7 @@ class Readout:
         return rows
 
     def at(self, values: ArrayLike) -> Array:
-        """Return the rows at parameter values of shape (..., parameter); shape (..., channel, column of Z)."""
+        """Return the rows, 1 and m, at parameter values of shape (..., parameter); shape (..., channel, column of Z)."""
         values = np.asarray(values, dtype=float)
         placed = self._placed(values)
         return placed * (1 + self._unknown(_GAIN, values)[..., None]) if self._has[_GAIN] else placed
@@ -168,7 +168,15 @@ class Readout:
         return slopes
 
     def observed(self, displacements: Part, velocities: Part, accelerations: Part, axis: int = -2) -> Part:
-        """Return Z from X, Ẋ and Ẍ, whose coordinates are along an axis."""
+        """Return Z from X, Ẋ and Ẍ.
+
+        Parameters
+        ----------
+        displacements, velocities, accelerations
+            SI, shape (..., coordinate, time) or (..., coordinate, mode).
+        axis
+            That of the coordinates, if another one.
+        """
         motions = (displacements, velocities, accelerations)
         if len(self.orders) == 1:
             return motions[self.orders[0]]
@@ -184,7 +192,7 @@ class Readout:
         Parameters
         ----------
         highest
-            The highest derivatives likewise, shape (coordinate, state + further); see `LinearModel.accelerations`.
+            The highest derivatives likewise, SI, shape (coordinate, state + further); see `LinearModel.accelerations`.
         massive
             Number of coordinates that move a mass.
 

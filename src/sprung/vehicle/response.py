@@ -38,7 +38,19 @@ class Motion(NamedTuple):
 
 
 def after_rest(motion: Motion, samples: int) -> Motion:
-    """Return a motion after a rest of so many samples, at the displacements with which it begins."""
+    """Return a motion after a rest at the displacements with which it begins.
+
+    Parameters
+    ----------
+    motion
+        SI, shape (coordinate, time) each.
+    samples
+        Of the rest.
+
+    Returns
+    -------
+    Motion
+    """
     before = ((0, 0), (samples, 0))
     still = (np.pad(part, before) for part in motion[1:])
     return Motion(np.pad(motion.displacement, before, "edge"), *still)

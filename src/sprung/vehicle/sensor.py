@@ -22,7 +22,7 @@ from sprung.vehicle.nuisances import SensorQuantity, sensor_unknown
 Pad = Literal["pad fl", "pad fr", "pad rl", "pad rr", "pad front", "pad rear", "pad left", "pad right", "pad wheel"]
 """A pad under the tyre of a wheel station."""
 
-SensorPlace = Literal["body", "fl", "fr", "rl", "rr", "front", "rear", "left", "right", "wheel"] | Pad
+SensorPlace = Literal["body", Wheel, Pad]
 """The body, a wheel station, or a pad under a tyre."""
 
 PADS: Mapping[str, Wheel] = {f"pad {wheel}": wheel for wheel in STATIONS}
@@ -59,8 +59,7 @@ class Sensor:
     relative_to: Wheel | None = None
     """Wheel station from which a sensor on the body measures: suspension travel, positive in rebound."""
     position: tuple[Finite, Finite, Finite] | None = None
-    """x forward of the front axle, y left of the centreline, z above the ground, m. Body sensors only; suspension travel is
-    measured over its wheel unless a position is stated."""
+    """x forward of the front axle, y left of the centreline, z above the ground, m. Body sensors only."""
     unit: str | None = None
     """Unit; overrides that of the file; m/s² for an acceleration if neither states one."""
     direction: Literal["up", "down"] = "up"

@@ -29,8 +29,9 @@ def torsion_test(base: CandidateFit) -> Fault | None:
         about the longitudinal axis. Four and more of them show what no rigid body can do.
     """
     sensors = base.campaign.sensors
-    body = [i for i, sensor in enumerate(sensors) if sensor.on == "body" and base.table.counts[:, i].any()]
-    wheels = [i for i in range(len(sensors)) if i not in body]
+    placed = [sensor.position is not None and sensor.relative_to is None for sensor in sensors]
+    body = [i for i, sensor in enumerate(sensors) if placed[i] and base.table.counts[:, i].any()]
+    wheels = [i for i, sensor in enumerate(sensors) if sensor.wheel is not None]
     if len(body) < 3:
         return None
     places = np.array([sensors[i].position for i in body], dtype=float)

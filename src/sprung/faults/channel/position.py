@@ -20,6 +20,8 @@ _MIRRORED = 0.1
 def position(prediction: ChannelPrediction) -> Iterator[ChannelHypothesis]:
     """Estimate the place on the body: the reading is linear in it."""
     sensor = prediction.sensor
+    if sensor.quantity in ("angular-rate", "force") or (sensor.relative_to is not None and sensor.position is None):
+        return
     stated = sensor.position or (0.0, 0.0, 0.0)
     code = "wrong-wheel" if sensor.position is None else "position"
     origin = replace(sensor, on="body", position=(0.0, 0.0, stated[2]))

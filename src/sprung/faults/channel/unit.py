@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
@@ -10,10 +10,16 @@ from sprung.errors import Fault
 from sprung.faults.channel.hypothesis import ChannelHypothesis
 from sprung.faults.channel_prediction import ChannelPrediction
 from sprung.faults.correction import scale_channel
-from sprung.units import STANDARD_GRAVITY
+from sprung.units import Quantity, si_factor, si_symbol
 
-_UNITS = {"g": STANDARD_GRAVITY, "mm/s²": 1e-3, "cm/s²": 1e-2, "mg": STANDARD_GRAVITY / 1000, "ft/s²": 0.3048}
-"""m/s² in each unit that may be taken for m/s², or m/s² for it."""
+_MISTAKEN: Mapping[Quantity, tuple[str, ...]] = {
+    "acceleration": ("g", "mm/s²", "cm/s²", "mg", "ft/s²"),
+    "velocity": ("mm/s", "cm/s", "km/h", "in/s"),
+    "displacement": ("mm", "cm", "in"),
+    "angular-rate": ("deg/s", "rpm"),
+    "force": ("kN", "daN", "lbf"),
+}
+"""Units that may be taken for the SI unit, or that for them."""
 
 _NEAR = 0.5
 """Logarithm by which the estimated gain may miss that of a unit before the vehicle is fitted with it."""
@@ -24,7 +30,7 @@ def unit(prediction: ChannelPrediction) -> Iterator[ChannelHypothesis]:
     gain = prediction.gain
     if not gain > 0:
         return
-    for factor, reading in _factors():
+    for factor, reading in _factors(prediction.sensor.quantity):
         if abs(np.log(gain / factor)) < _NEAR and prediction.gravity_allows(factor):
             yield _in_unit(prediction, factor, f"{reading}, as the comparison with the other channels shows")
 
@@ -40,8 +46,10 @@ def _in_unit(prediction: ChannelPrediction, factor: float, what: str) -> Channel
     )
 
 
-def _factors() -> Iterator[tuple[float, str]]:
+def _factors(quantity: Quantity) -> Iterator[tuple[float, str]]:
     """Yield by how much a channel reads too much where one unit is taken for another, and which."""
-    for name, si in _UNITS.items():
-        yield 1 / si, f"the samples are in {name}, not in m/s² as stated"
-        yield si, f"the samples are in m/s², not in {name} as stated"
+    stated = si_symbol(quantity)
+    for name in _MISTAKEN[quantity]:
+        si = si_factor(name, quantity)
+        yield 1 / si, f"the samples are in {name}, not in {stated} as stated"
+        yield si, f"the samples are in {stated}, not in {name} as stated"

@@ -12,11 +12,15 @@ from sprung.faults.correction import Correction, describe_sensor
 
 
 def wheel(prediction: ChannelPrediction) -> Iterator[ChannelHypothesis]:
-    """Put the sensor on each other wheel."""
+    """Put the sensor on each other wheel; what measures suspension travel does so at each other one."""
+    stated = prediction.sensor
+    if stated.quantity in ("angular-rate", "force"):
+        return
     for station in prediction.candidate.campaign.layout.wheels:
-        if station == prediction.sensor.on:
+        if station in (stated.wheel, stated.relative_to):
             continue
-        sensor = replace(prediction.sensor, on=station, position=None)
+        there = {"on": station, "position": None} if stated.relative_to is None else {"relative_to": station}
+        sensor = replace(stated, **there)
         what = f"the channel shows the motion of wheel {station}, not of {stated_place(prediction)}"
         do = "Correct on = ... in the campaign file, or move the sensor."
         fault = Fault("wrong-wheel", prediction.sensor.channel, what, do)

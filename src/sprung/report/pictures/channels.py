@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from sprung.report.pictures.motions import comparison_panels
 from sprung.results import Series
 
 
-def channels_picture(name: str, series: Series, channels: Sequence[str]) -> Picture:
+def channels_picture(name: str, series: Series, channels: Sequence[str], units: Mapping[str, str]) -> Picture:
     """Return the picture of some channels of one drop.
 
     Parameters
@@ -23,16 +23,18 @@ def channels_picture(name: str, series: Series, channels: Sequence[str]) -> Pict
         As it was fitted.
     channels
         Names of channels, each of which the drop has.
+    units
+        Of the readings, by channel.
 
     Returns
     -------
     Picture
-        Two panels for each channel, m/s² over s.
+        Two panels for each channel, in its unit over s.
     """
     panels: list[Panel] = []
     for channel in channels:
         i = series.channels.index(channel)
         note = "left out" if np.isnan(series.measured[i]).all() else ""
-        panels += comparison_panels(channel, "m/s²", series.time, series.measured[i], series.fitted[i], note)
+        panels += comparison_panels(channel, units[channel], series.time, series.measured[i], series.fitted[i], note)
     x = Axis("time on the recording's clock, s", float(series.time[0]), float(series.time[-1]))
     return Picture(f"{name}: measured and fitted", x, tuple(panels))

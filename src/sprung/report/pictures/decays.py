@@ -25,9 +25,11 @@ class LoadDecays:
     rate
         Samples per second.
     measured, fitted
-        m/s², shape (channel, time) each.
+        SI, shape (channel, time) each.
     on_body
         Whether each channel is of a sensor on the body, shape (channel,).
+    units
+        Of each channel's readings.
     """
 
     load: str
@@ -35,6 +37,7 @@ class LoadDecays:
     measured: tuple[Real, ...]
     fitted: tuple[Real, ...]
     on_body: NDArray[np.bool_]
+    units: tuple[str, ...]
 
 
 def decays_by_load(result: Result) -> Iterator[LoadDecays]:
@@ -60,6 +63,7 @@ def decays_by_load(result: Result) -> Iterator[LoadDecays]:
         usable = np.logical_and.reduce([~np.isnan(decay.measured).any(axis=1) for decay in series])
         if not usable.any():
             continue
+        units = {channel.name: channel.unit for channel in fitted[0].channels}
         locations = {channel.name: channel.on for channel in fitted[0].channels}
         names = [name for name, use in zip(series[0].channels, usable, strict=True) if use]
         yield LoadDecays(
@@ -68,6 +72,7 @@ def decays_by_load(result: Result) -> Iterator[LoadDecays]:
             tuple(decay.measured[usable] for decay in series),
             tuple(decay.fitted[usable] for decay in series),
             np.array([locations.get(name) == "body" for name in names]),
+            tuple(units[name] for name in names),
         )
 
 

@@ -29,13 +29,15 @@ class Lane:
     name, notes, warnings
         Text on its left, and on its right: noise and peak, and below them the faults.
     values
-        Shape (time,), m/s²; all NaN where the channel cannot be drawn.
+        Shape (time,), in its unit; all NaN where the channel cannot be drawn.
     used
         Whether it is used in the free decay.
     marked
         Indices of faulty samples.
     middle, span
-        Values at the middle of the lane, and over its height, m/s².
+        Values at the middle of the lane, and over its height, in its unit.
+    unit
+        Of its values.
     """
 
     name: str
@@ -46,6 +48,7 @@ class Lane:
     marked: NDArray[np.int64]
     middle: float
     span: float
+    unit: str
 
     def height(self, values: Real | float) -> Real:
         """Return positions of values in a lane of height 1 around 0."""
@@ -75,9 +78,9 @@ def lanes_of(drop: DropReport, recorded: PlottedRecording) -> list[Lane]:
         Its whole recording.
     """
     lanes = [_lane(drop, channel, recorded) for channel in range(len(drop.channels))]
-    # Channels of the body share one scale, those of the wheels another; channels left out have their own.
+    # Channels of the body that measure the same share one scale, those of the wheels another; channels left out have their own.
     groups = [
-        report.on == "body" if lane.used or drop.start is None else None
+        (report.on == "body", lane.unit) if lane.used or drop.start is None else None
         for report, lane in zip(drop.channels, lanes, strict=True)
     ]
     largest = {
@@ -110,6 +113,7 @@ def _lane(drop: DropReport, channel: int, recorded: PlottedRecording) -> Lane:
         marked=np.unique(np.concatenate([np.empty(0, dtype=np.int64), *(mark.samples for mark in marks)])),
         middle=(low + high) / 2,
         span=high - low,
+        unit=report.unit,
     )
 
 

@@ -28,7 +28,7 @@ def recording_picture(drop: DropReport, recorded: PlottedRecording) -> Picture:
     Returns
     -------
     Picture
-        A panel for each channel, m/s² over s.
+        A panel for each channel, in SI over s.
     """
     time = recorded.time
     return _picture("The whole recording", drop, recorded, (float(time[0]), float(time[-1])), False)
@@ -75,14 +75,16 @@ def _picture(
         note, warning = ("", "") if near else (", ".join(lane.notes), ", ".join(lane.warnings))
         panels.append(Panel(_axis(lane), tuple(marks), _LANE, note, warning, lane.name, lane.name))
     reason = f" Reason for its start: {drop.why_start}." if drop.why_start and not near else ""
-    description = f"Accelerations of {len(panels)} channels in m/s², the free decay shaded.{reason}"
+    what = "Accelerations" if {channel.quantity for channel in drop.channels} == {"acceleration"} else "Readings"
+    units = ", ".join(dict.fromkeys(channel.unit for channel in drop.channels))
+    description = f"{what} of {len(panels)} channels in {units}, the free decay shaded.{reason}"
     return Picture(title, Axis("time on the recording's clock, s", *limits), tuple(panels), description, zoomable=True)
 
 
 def _axis(lane: Lane) -> Axis:
     ticks = tuple(lane.ticks)
     spread = lane.span / 0.86
-    return Axis("m/s²", lane.middle - spread / 2, lane.middle + spread / 2, ticks=_few(ticks))
+    return Axis(lane.unit, lane.middle - spread / 2, lane.middle + spread / 2, ticks=_few(ticks))
 
 
 def _few(ticks: tuple[tuple[float, str], ...]) -> tuple[tuple[float, str], ...]:

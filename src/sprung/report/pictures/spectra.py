@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 
 import numpy as np
@@ -37,7 +38,7 @@ def spectra_picture(decays: LoadDecays, modes: Sequence[ModeEstimate]) -> Pictur
     Returns
     -------
     Picture
-        m/s² per √Hz over Hz: a panel for the body's sensors, and one for those at the wheels.
+        SI per √Hz over Hz: a panel for the body's sensors, and one for those at the wheels, of each quantity that is measured.
     """
     determined = [mode for mode in modes if mode.frequency_std is not None and mode.pole[1] > 0]
     rate = decays.rate
@@ -49,7 +50,10 @@ def spectra_picture(decays: LoadDecays, modes: Sequence[ModeEstimate]) -> Pictur
     x = Axis("frequency, Hz", _LOW, float(frequency[shown][-1]), log=True)
     rules = merge_labels([Rule(mode.damped_frequency, "mode", mode.name, dashed=True) for mode in determined], x)
     panels = []
-    for part, name in ((decays.on_body, "sensors on the body"), (~decays.on_body, "sensors at the wheels")):
+    units = np.array(decays.units)
+    places = ((decays.on_body, "sensors on the body"), (~decays.on_body, "sensors at the wheels"))
+    for unit, (place, name) in itertools.product(dict.fromkeys(decays.units), places):
+        part = place & (units == unit)
         if not part.any():
             continue
         # One-sided, mean over drops and channels.
@@ -59,7 +63,7 @@ def spectra_picture(decays: LoadDecays, modes: Sequence[ModeEstimate]) -> Pictur
             Curve(frequency[shown], sizes[0], "measured", "measured", 2.2),
             Curve(frequency[shown], sizes[1], "simulated", "fitted vehicle"),
         )
-        axis = Axis("m/s² per √Hz", max(float(sizes[0].min(initial=top)), _FLOOR * top), top, log=True)
+        axis = Axis(f"{unit} per √Hz", max(float(sizes[0].min(initial=top)), _FLOOR * top), top, log=True)
         panels.append(Panel(axis, (*rules, *curves), note=name))
     return Picture(
         f"Spectra, {decays.load}", x, tuple(panels), "Spectra of the decays, with lines at the identified modes."

@@ -174,11 +174,16 @@ def channels_table(drops: Sequence[DropReport]) -> Table:
         )
         peak = significant_figures(max(peaks), 3) if peaks else "-"
         left_out = _drop_names(without, len(found)) if without else ""
-        rows.append([name, found[0][1].on or "a wheel", median_noise, largest, peak, left_out])
-    headers = ("channel", "on", "noise", "largest", "peak", "left out of")
-    title = "Channels, m/s²: noise at rest (median, largest), largest peak after a release"
+        rows.append([name, found[0][1].on or "a wheel", found[0][1].unit, median_noise, largest, peak, left_out])
+    headers = ["channel", "on", "unit", "noise", "largest", "peak", "left out of"]
+    units = list(dict.fromkeys(row[2] for row in rows))
+    if len(units) == 1:
+        for row in (headers, *rows):
+            del row[2]
+    unit = f", {units[0]}" if len(units) == 1 else ""
+    title = f"Channels{unit}: noise at rest (median, largest), largest peak after a release"
     spare = ("left out of", "on", "largest")
-    return Table(title, headers, tuple(map(tuple, rows)), frozenset(headers[2:5]), spare)
+    return Table(title, tuple(headers), tuple(map(tuple, rows)), frozenset(headers[-4:-1]), spare)
 
 
 def _listed(title: str, lines: Iterable[str]) -> RenderableType:

@@ -98,8 +98,13 @@ def residual_table(result: Result) -> RenderableType:
     """Return the table of model error and residual by channel, the largest error first."""
     fit = result.fit
     worst = sorted(fit.misfit, key=lambda channel: -fit.misfit[channel])
-    rows = [[name, f"{100 * fit.misfit[name]:.1f}", f"{fit.noise[name]:.3g}"] for name in worst]
-    headers = ("channel", "model error, % of signal", "residual, m/s² rms")
+    units = result.setup.units
+    alike = len(set(units.values())) == 1
+    rows = [
+        [name, f"{100 * fit.misfit[name]:.1f}", f"{fit.noise[name]:.3g}{'' if alike else f' {units[name]}'}"]
+        for name in worst
+    ]
+    headers = ("channel", "model error, % of signal", f"residual, {f'{units[worst[0]]} ' if alike else ''}rms")
     return render_rows("Residuals", headers, rows, headers[1:])
 
 
@@ -143,7 +148,7 @@ def _limit(limit: float, std: float | None) -> str:
 def fit_line(result: Result) -> RenderableType:
     """Return a summary of the fit in a few lines."""
     fit = result.fit
-    noise = ", ".join(f"{channel} {value:.3g}" for channel, value in fit.noise.items())
+    noise = ": ".join(result.setup.describe_noise(fit.noise))
     extras = f", with {', '.join(fit.model)}" if fit.model else ""
     text = (
         f"Fit: {fit.method}{extras}; {_count(fit.drops, 'drop')}, {fit.samples} samples, {fit.iterations} steps, "
@@ -155,7 +160,7 @@ def fit_line(result: Result) -> RenderableType:
     if rejected:
         return Text(f"{text}\nModel: {fit.why}.")
     axes = f"\nAxes: {fit.axes}." if fit.axes else ""
-    return hanging_text("", f"{text}\nModel: {fit.why}.{axes}\nNoise, m/s² rms: {noise}.")
+    return hanging_text("", f"{text}\nModel: {fit.why}.{axes}\n{noise[0].upper()}{noise[1:]}.")
 
 
 def _inflation_reason(fit: FitReport) -> str:

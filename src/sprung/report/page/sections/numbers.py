@@ -23,7 +23,8 @@ from sprung.results import (
 )
 from sprung.tables import Table, unit_text, value_cells
 from sprung.uncertainty import Estimate, round_by_uncertainty
-from sprung.vehicle import Layout, layout_of
+from sprung.units import quantity_name
+from sprung.vehicle import Layout, Sensor, layout_of
 
 _CLOSE = 0.9
 """Correlation above which a pair of parameters is listed."""
@@ -153,11 +154,19 @@ def _place(position: tuple[float, float, float]) -> str:
     return "(" + ", ".join(f"{part:g}" for part in position).replace("-", "\N{MINUS SIGN}") + ") m"
 
 
+def _measures(sensor: Sensor) -> str:
+    """Return what a sensor measures, in words."""
+    about = "" if sensor.axis == "vertical" else f" in {sensor.axis}"
+    of = "" if sensor.relative_to is None else f" relative to {sensor.relative_to}"
+    return f"{quantity_name(sensor.quantity)}{about}{of}"
+
+
 def _sensors(setup: Setup) -> Table:
-    headers = ("channel", "on", "position, m", "points", "unit", "range", "logger")
+    headers = ("channel", "measures", "on", "position, m", "points", "unit", "range", "logger")
     rows = tuple(
         (
             sensor.channel,
+            _measures(sensor),
             sensor.on or "",
             "" if sensor.position is None else _place(sensor.position).removesuffix(" m"),
             sensor.direction,

@@ -33,7 +33,7 @@ def settings(result: Result) -> Context:
             ),
         ),
         ("standard uncertainties", _inflation_text(result)),
-        ("noise, m/s² rms", ", ".join(f"{name} {value:.3g}" for name, value in fit.noise.items())),
+        result.setup.describe_noise(fit.noise),
     ]
     tables = []
     if fit.path:
