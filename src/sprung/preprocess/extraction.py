@@ -164,7 +164,7 @@ def _find_start(
         return Landing(0, 0, "no release was found, so the first sample")
     fall = np.sqrt(2 * (drop.height or _HIGHEST_BLOCKS) / STANDARD_GRAVITY)
     fastest = np.sqrt(2 * (drop.height or _LOWEST_BLOCKS) / _FASTEST_FALL)
-    possible = release.sample + int(fastest * recording.rate)
+    possible, usual = (release.sample + int(time * recording.rate) for time in (fastest, fall))
     typical = release.sample + int((fall + _HOPPING) * recording.rate)
     wheelbase = _wheelbase(campaign)
     landing = detect_landing(
@@ -180,7 +180,7 @@ def _find_start(
     }
     if not watched.issuperset(drop.wheels):  # a wheel without a usable sensor fell too
         why = _ALLOWED_FOR if typical > landing.certain else landing.why
-        later = max(landing.possible, possible), max(landing.certain, typical)
+        later = max(landing.possible, possible if landing.landed is None else usual), max(landing.certain, typical)
         landing = landing._replace(possible=later[0], certain=later[1], why=why)
     at_landing = np.flatnonzero(clipped[:, : release.sample + int(_CLIPPED * recording.rate)].any(axis=0))
     after = int(at_landing[-1]) + 1 if at_landing.size else 0
