@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from sprung.campaign.pad_checks import check_pads
 from sprung.campaign.plausibility import LIMITS, explain_implausible
 from sprung.campaign.plausibility_checks import SMALLEST, check_relations, check_sizes
 from sprung.campaign.schema import KNOWABLE, CampaignFile, VehicleFileSchema
@@ -57,6 +58,7 @@ def check(parsed: ParsedFile[CampaignFile], problems: Problems) -> None:
     _check_model(parsed, problems)
     _check_stations(parsed, problems)
     _check_drops(parsed, problems)
+    check_pads(parsed, problems)
     check_quantities(parsed, problems)
 
 

@@ -80,6 +80,7 @@ def check_statements(
     """
     # The models of the files are not needed to hold a campaign, only to check it.
     from sprung.campaign.checks import check_body_sensors, check_quantities  # noqa: PLC0415
+    from sprung.campaign.pad_checks import check_pads  # noqa: PLC0415
     from sprung.campaign.parsing import ParsedFile  # noqa: PLC0415
     from sprung.campaign.schema import CampaignFile, Measured, MotionRatioSection, VehicleSection  # noqa: PLC0415
 
@@ -111,4 +112,5 @@ def check_statements(
     parsed = ParsedFile(name, document, file, frozenset(), {})
     if whole:
         check_body_sensors(parsed, problems)
+    check_pads(parsed, problems)
     check_quantities(parsed, problems)

@@ -15,11 +15,14 @@ from numpy.typing import NDArray
 
 from sprung.estimation.closed_form_likelihood import ClosedFormAt
 from sprung.estimation.modal_solution import solve_modes
+from sprung.estimation.modulating_functions import modulating_function_estimate
 from sprung.estimation.objective import ObjectiveAt
 from sprung.estimation.projected_response import ExponentialSums
 from sprung.estimation.records import RecordBatch, batch_records, in_order
+from sprung.estimation.start_ranking import rank_starts
+from sprung.estimation.starts import VehicleSize
 from sprung.preprocess import FreeDecay
-from sprung.vehicle import LinearModel, Readout
+from sprung.vehicle import LinearModel, Readout, Sensor
 
 Real = NDArray[np.float64]
 
@@ -85,6 +88,45 @@ class ClosedFormObjective:
     @cached_property
     def _has_clocks(self) -> bool:
         return any(batch.clock_design.shape[1] for batch in self.batches)
+
+    def unexplained(self, vehicles: Real, weights: Real) -> Real:
+        """Return what vehicles leave of some of the records, to rank them as starts.
+
+        Parameters
+        ----------
+        vehicles
+            Parameters, SI, shape (vehicle, parameter).
+        weights
+            1/σ² of each channel, SI, shape (channel,).
+
+        Returns
+        -------
+        ndarray
+            Residual sums of squares over their energy, dimensionless, shape (vehicle, channel).
+        """
+        return rank_starts(self, vehicles, weights)
+
+    def estimate_start(
+        self, sensors: Sequence[Sensor], size: VehicleSize, given: Mapping[str, float]
+    ) -> dict[str, float] | None:
+        """Return the parameters of a vehicle near the one that is sought, SI by name, without any guess.
+
+        Parameters
+        ----------
+        sensors
+            As stated.
+        size
+            Size of the vehicle.
+        given
+            Parameters that are held at a value, SI, by name.
+
+        Returns
+        -------
+        dict or None
+            None where the records do not show it; see `modulating_function_estimate`.
+        """
+        models = [self.models[load].with_known(given) if given else self.models[load] for load in self.loads]
+        return modulating_function_estimate(self.batches, models, sensors, size)
 
     def with_decays(self, decays: Sequence[FreeDecay]) -> ClosedFormObjective:
         """Return the objective of other decays with the same models and sensors."""

@@ -52,6 +52,7 @@ class ClosedFormAt:
 
     is_reversible = True
     by_window = None
+    coupling = None
 
     @property
     def modal(self) -> ClosedFormAt:

@@ -132,6 +132,9 @@ def _shifts(decays: Sequence[FreeDecay], models: Mapping[str, LinearModel], fit:
     compressions = {load: _static_compression(models[load], fit.values) for load in {decay.load for decay in decays}}
     wheels = layout_of(fit.names).wheels_at
     for drop, decay in enumerate(decays):
+        if decay.pads:
+            shifts.append(0)
+            continue
         static = compressions[decay.load][:, None]
         earlier, samples = decay.earlier.shape[1] if fit.is_reversible else 0, decay.samples
         motion = fit.motion(drop, earlier, min(samples, int(_LONGEST * decay.rate)))

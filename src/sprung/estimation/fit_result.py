@@ -76,7 +76,7 @@ class FitResult:
     @cached_property
     def noise(self) -> Real:
         """Noise level of each channel, m/s², shape (channel,)."""
-        noise: Real = np.sqrt(self.problem.noise_variance(self.residual_sums, self.iterate.at.leverage))
+        noise: Real = np.sqrt(self.problem.noise_variance(self.residual_sums, self.iterate.at))
         return noise
 
     @cached_property

@@ -9,9 +9,9 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.estimation.closed_form import ClosedFormObjective
 from sprung.estimation.fit_result import FitResult
-from sprung.estimation.modulating_functions import modulating_function_estimate
+from sprung.estimation.joint_objective import linear_objective
+from sprung.estimation.objective import LinearObjective
 from sprung.estimation.priors import Coordinates, PriorsAndConstraints, UsualValue, scaling_direction
 from sprung.estimation.problem import (
     CLOSE_BY,
@@ -24,7 +24,6 @@ from sprung.estimation.problem import (
     Iterate,
     least_information,
 )
-from sprung.estimation.start_ranking import rank_starts
 from sprung.estimation.starts import VehicleSize, start_grid
 from sprung.optimisation import Maximum, maximise
 from sprung.preprocess import FreeDecay
@@ -135,9 +134,7 @@ def fit_linear(
     vehicles = [vehicle | nuisance for vehicle in start_grid(size, known, "m_e" in names)]
     problem = problem_of(objective, known, vehicles[0])
     coordinates = problem.priors.coordinates
-    nominal = {load: model.with_known(nuisance) if nuisance else model for load, model in models.items()}
-    by_load = [nominal[load] for load in objective.loads]
-    direct = modulating_function_estimate(objective.batches, by_load, sensors, size)
+    direct = objective.estimate_start(sensors, size, nuisance)
     ends: list[Maximum[Iterate]] = []
     if direct is not None:
         progress(Step("fitting from a direct start"))
@@ -165,14 +162,14 @@ def expected_nuisances(known: Mapping[str, KnownValue]) -> dict[str, float]:
 
 def objective_of(
     decays: Sequence[FreeDecay], models: Mapping[str, LinearModel], sensors: Sequence[Sensor]
-) -> ClosedFormObjective:
+) -> LinearObjective:
     """Return the likelihood of decays as a function of the parameters of linear models."""
     names = next(iter(models.values())).names
-    return ClosedFormObjective(tuple(decays), models, Readout.with_unknowns(sensors, names))
+    return linear_objective(decays, models, Readout.with_unknowns(sensors, names), sensors)
 
 
 def problem_of(
-    objective: ClosedFormObjective,
+    objective: LinearObjective,
     known: Mapping[str, KnownValue],
     typical: Mapping[str, float],
     usual: Mapping[str, UsualValue] = MappingProxyType({}),
@@ -217,12 +214,12 @@ def _leaves_white_noise(fit: FitResult) -> bool:
     return bool(np.all(rounding | (np.abs(neighbours) <= _WHITE * total)))
 
 
-def _costs_as_they_are(problem: EstimationProblem, objective: ClosedFormObjective, starts: Sequence[Real]) -> Real:
+def _costs_as_they_are(problem: EstimationProblem, objective: LinearObjective, starts: Sequence[Real]) -> Real:
     """Cost of starts on decimated records, channels weighted by their energy; shape (start,)."""
     values = np.array([problem.priors.coordinates.values(u) for u in starts])
     # In two halves, for the sake of memory.
     halves = np.array_split(values, 2)
-    parts = np.concatenate([rank_starts(objective, half, problem.signal_weights) for half in halves])
+    parts = np.concatenate([objective.unexplained(half, problem.signal_weights) for half in halves])
     costs: Real = np.log(parts + NOISE_FLOOR**2) @ objective.observations.sum(axis=0)
     return costs
 

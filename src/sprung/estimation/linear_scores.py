@@ -7,8 +7,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.estimation.closed_form import ClosedFormObjective
 from sprung.estimation.fit_result import FitResult
+from sprung.estimation.joint_objective import linear_objective
 from sprung.estimation.linear_fit import problem_of
 from sprung.estimation.priors import Coordinates
 from sprung.estimation.problem import Iterate
@@ -107,7 +107,9 @@ def score_linear_term(
     """
     at, readout = fit.iterate.at.modal, Readout.with_unknowns(sensors, next(iter(models.values())).names)
     objective = (
-        ClosedFormObjective(fit.decays, models, readout) if at is None else at.objective.with_models(models, readout)
+        linear_objective(fit.decays, models, readout, sensors)
+        if at is None
+        else at.objective.with_models(models, readout)
     )
     known = {**known, **uncertainties_of(sensors)}
     scores = []

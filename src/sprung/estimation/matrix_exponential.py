@@ -52,6 +52,7 @@ class MatrixExponentialAt:
 
     is_reversible = True
     by_window = None
+    coupling = None
     modal = None
 
     def reweighted(self, weights: Real) -> MatrixExponentialAt:

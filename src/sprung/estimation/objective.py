@@ -6,18 +6,35 @@ asks for `ObjectiveAt.modal`.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, Protocol, Self
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, NamedTuple, Protocol, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.estimation.starts import VehicleSize
 from sprung.preprocess import FreeDecay
+from sprung.vehicle import LinearModel, Readout, Sensor
 
 if TYPE_CHECKING:
     from sprung.estimation.closed_form_likelihood import ClosedFormAt
 
 Real = NDArray[np.float64]
+
+
+class NoiseCoupling(NamedTuple):
+    """How the noise of several channels mixes in their residuals, where unknowns are eliminated sample by sample.
+
+    Attributes
+    ----------
+    expected
+        Expected residual sums of squares of each channel by what noise of each adds, in units of 1/weight; (channel, channel).
+    least
+        Noise variance that a channel has at least, SI, shape (channel,): what is faster than all motions shows it.
+    """
+
+    expected: Real
+    least: Real
 
 
 class Objective(Protocol):
@@ -38,8 +55,58 @@ class Objective(Protocol):
     def at(self, values: Real, weights: Real) -> ObjectiveAt:
         """Evaluate at parameter values, SI, shape (parameter,), with 1/σ² of each channel, s⁴/m², shape (channel,)."""
 
-    def with_decays(self, decays: Sequence[FreeDecay]) -> Self:
+    def with_decays(self, decays: Sequence[FreeDecay]) -> Objective:
         """Return the objective of other decays with the same models and sensors."""
+
+
+class LinearObjective(Objective, Protocol):
+    """The likelihood of decays of a linear vehicle, or of records of one that is driven."""
+
+    @property
+    def sensors(self) -> Readout:
+        """The sensors over the fit's parameters."""
+
+    def with_decays(self, decays: Sequence[FreeDecay]) -> LinearObjective:
+        """Return the objective of other records with the same models and sensors."""
+
+    def with_models(self, models: Mapping[str, LinearModel], sensors: Readout) -> LinearObjective:
+        """Return the objective of other models of the same records."""
+
+    def unexplained(self, vehicles: Real, weights: Real) -> Real:
+        """Return what vehicles leave of some of the records, to rank them as starts.
+
+        Parameters
+        ----------
+        vehicles
+            Parameters, SI, shape (vehicle, parameter).
+        weights
+            1/σ² of each channel, SI, shape (channel,).
+
+        Returns
+        -------
+        ndarray
+            Residual sums of squares over their energy, dimensionless, shape (vehicle, channel).
+        """
+
+    def estimate_start(
+        self, sensors: Sequence[Sensor], size: VehicleSize, given: Mapping[str, float]
+    ) -> dict[str, float] | None:
+        """Return the parameters of a vehicle near the one that is sought, SI by name, without any guess.
+
+        Parameters
+        ----------
+        sensors
+            As stated.
+        size
+            Size of the vehicle.
+        given
+            Parameters that are held at a value, SI, by name.
+
+        Returns
+        -------
+        dict or None
+            None where the records do not show it.
+        """
 
 
 class ObjectiveAt(Protocol):
@@ -64,6 +131,10 @@ class ObjectiveAt(Protocol):
     @property
     def leverage(self) -> Real:
         """Number of eliminated unknowns that each channel determines, shape (channel,)."""
+
+    @property
+    def coupling(self) -> NoiseCoupling | None:
+        """How the noise of channels mixes in their residuals; None where eliminated unknowns are few beside the samples."""
 
     @property
     def gradient(self) -> Real:

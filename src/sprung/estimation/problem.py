@@ -12,7 +12,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.estimation.objective import Objective, ObjectiveAt
+from sprung.estimation.objective import NoiseCoupling, Objective, ObjectiveAt
 from sprung.estimation.priors import PriorsAndConstraints
 from sprung.optimisation import Maximum, NormalEquations, maximise
 from sprung.vehicle import is_of_sensor
@@ -40,6 +40,8 @@ _EXACT_ENOUGH = 0.005  # relative error that a quantity called exact may have be
 MOST_STEPS, _PROVISIONAL_STEPS = 100, 40  # at the most, where the end counts and where it is only a stage
 _LONGEST_STEP = 1.0  # in logarithms: no parameter changes by more than a factor of e at once
 _ROUNDING = 1e-10  # of the cost
+_LARGEST_FALL = 0.25  # factor by which a step may lower a noise variance at the most, where unknowns couple them
+_NOISE_ROUNDS = 2  # after the first, in which noise levels settle that unknowns couple
 
 
 def identifiable_subspace(information: Real) -> Real:
@@ -138,42 +140,85 @@ class EstimationProblem:
         """Least noise variance, so that rounding is not taken for information; (m/s²)², shape (channel,)."""
         return NOISE_FLOOR**2 / self.signal_weights
 
-    def noise_variance(self, residual_sums: Real, leverage: Real) -> Real:
+    def noise_variance(self, residual_sums: Real, near: ObjectiveAt | None = None) -> Real:
         """Estimate each channel's noise variance, the eliminated unknowns subtracted from the number of samples.
 
         Parameters
         ----------
-        residual_sums, leverage
-            As of an `ObjectiveAt`, shapes (drop, channel) and (channel,).
+        residual_sums
+            As of an `ObjectiveAt`, shape (drop, channel).
+        near
+            Where the eliminated unknowns are counted, of the same weights; None to neglect them.
 
         Returns
         -------
         ndarray
             (m/s²)², shape (channel,).
         """
-        freedom = np.maximum(self._observations - self._offsets - leverage, 1.0)
-        variance = residual_sums.sum(axis=0) / freedom + self.least_variance
+        sums = residual_sums.sum(axis=0)
+        if near is not None and near.coupling is not None:
+            return self._restricted_variance(sums, near.weights, near.coupling)
+        freedom = self._freedom(0.0 if near is None else near.leverage)
         # A channel that no drop has weighs nothing, whatever its noise.
-        return np.where(self._offsets > 0, variance, 1.0)
+        return np.where(self._offsets > 0, sums / freedom + self.least_variance, 1.0)
 
-    def cost(self, iterate: Iterate, leverage: Real | None = None) -> float:
+    def _freedom(self, leverage: Real | float) -> Real:
+        """Return the samples of each channel beyond offsets and other unknowns that it determines, shape (channel,)."""
+        freedom: Real = np.maximum(self._observations - self._offsets - leverage, 1.0)
+        return freedom
+
+    def _restricted_variance(self, sums: Real, weights: Real, coupling: NoiseCoupling) -> Real:
+        """Estimate noise variances by restricted maximum likelihood, one step of Fisher's scoring; shape (channel,).
+
+        Where many unknowns are eliminated, residuals of a channel are made of the noise of several: what remains of them all is
+        set equal to what is expected.
+        """
+        used = self._offsets > 0
+        variance = np.ones(len(sums))
+        matrix, scaled = coupling.expected[np.ix_(used, used)], (sums * weights)[used]
+        # In units of the variances that the weights were taken from. None shrinks beyond all bounds at once.
+        found = np.linalg.lstsq(matrix, scaled, rcond=None)[0]
+        variance[used] = np.maximum(found, _LARGEST_FALL)
+        return np.where(used, np.maximum(variance / weights, self.least_variance + coupling.least), 1.0)
+
+    def cost(self, iterate: Iterate) -> float:
         """Return minus twice the log-likelihood, up to a constant.
 
         Parameters
         ----------
         iterate
             Where.
-        leverage
-            Eliminated unknowns by channel, shape (channel,); those of the iterate unless given.
         """
         at = iterate.at
         sums = at.residual_sums
         if not np.isfinite(sums).all():
             return np.inf
         residual, _ = self.priors.residuals(iterate.u)
-        variance = self.noise_variance(sums, at.leverage if leverage is None else leverage)
-        of_records = float(self._observations @ np.log(variance)) + at.penalty
+        of_records = float(self._observations @ np.log(self.noise_variance(sums, at))) + at.penalty
         return of_records / self.overdispersion + float(residual @ residual)
+
+    def gain(self, before: Iterate, after: Iterate) -> float:
+        """Return what twice the log-likelihood gains from one point to another one near by.
+
+        How the eliminated unknowns are shared out among the channels is no observation, and stays as it is at the first point.
+        Where unknowns couple the noise of channels, residuals are compared with the noise levels there, as the gradient does.
+
+        Parameters
+        ----------
+        before, after
+            The points.
+        """
+        sums = after.at.residual_sums.sum(axis=0)
+        if not np.isfinite(sums).all():
+            return -np.inf
+        used, is_coupled = self._offsets > 0, before.at.coupling is not None
+        rounding = self.least_variance * (self._observations if is_coupled else self._freedom(before.at.leverage))
+        left, remains = before.at.residual_sums.sum(axis=0) + rounding, sums + rounding
+        counted = before.at.weights * left if is_coupled else self._observations
+        of_records = float(counted[used] @ np.log(left[used] / remains[used]))
+        of_records += before.at.penalty - after.at.penalty
+        (first, _), (second, _) = self.priors.residuals(before.u), self.priors.residuals(after.u)
+        return of_records / self.overdispersion + float(first @ first - second @ second)
 
     def start(self, u: Real) -> Iterate:
         """Return the first iterate, with the noise that the residuals show there."""
@@ -181,8 +226,10 @@ class EstimationProblem:
         sums = at.residual_sums
         if not np.isfinite(sums).all():
             return Iterate(u, at)
-        at = at.reweighted(1 / self.noise_variance(sums, np.zeros(sums.shape[1])))
-        return Iterate(u, at.reweighted(1 / self.noise_variance(at.residual_sums, at.leverage)))
+        at = at.reweighted(1 / self.noise_variance(sums))
+        for _ in range(1 if at.coupling is None else _NOISE_ROUNDS):
+            at = at.reweighted(1 / self.noise_variance(at.residual_sums, at))
+        return Iterate(u, at)
 
     def system(self, iterate: Iterate, inflation: float = 1.0) -> tuple[Real, Real, Real]:
         """Return information and gradient in the null space of the constraints, and its basis.
@@ -248,13 +295,11 @@ class EstimationProblem:
         """Return the iterate a step of the coordinates away, and what twice the log-likelihood gains."""
         u = self.priors.project(iterate.u + step)
         at = iterate.at.moved(self.priors.coordinates.values(u))
-        leverage = iterate.at.leverage
-        before, after = self.cost(iterate, leverage), self.cost(Iterate(u, at), leverage)
-        if not np.isfinite(after):
+        gain = self.gain(iterate, Iterate(u, at))
+        if not np.isfinite(gain):
             return iterate, -np.inf
-        tried = Iterate(u, at.reweighted(1 / self.noise_variance(at.residual_sums, leverage)))
-        gain = before - after
-        return tried, max(gain, 0.0) if gain >= -_ROUNDING * abs(before) else gain
+        tried = Iterate(u, at.reweighted(1 / self.noise_variance(at.residual_sums, iterate.at)))
+        return tried, max(gain, 0.0) if gain >= -_ROUNDING * abs(self.cost(iterate)) else gain
 
     def maximise(
         self,

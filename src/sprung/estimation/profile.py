@@ -162,6 +162,4 @@ def _maximise_holding(problem: EstimationProblem, name: str, value: float, near:
 
 def _fall(problem: EstimationProblem, fit: FitResult, point: Iterate) -> float:
     """Fall of twice the log-likelihood from the optimum to a point."""
-    # How the eliminated unknowns are shared out among the channels is no observation, and stays as it is at the optimum.
-    leverage = fit.iterate.at.leverage
-    return problem.cost(point, leverage) - problem.cost(fit.iterate, leverage)
+    return -problem.gain(fit.iterate, point)

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.estimation.closed_form import ClosedFormObjective
 from sprung.estimation.modal_solution import solve_modes
 from sprung.estimation.projected_response import amplitude_prior, inverse_of
 from sprung.vibration import exponential_gram
+
+if TYPE_CHECKING:
+    from sprung.estimation.closed_form import ClosedFormObjective
 
 Real = NDArray[np.float64]
 

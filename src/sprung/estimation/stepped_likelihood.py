@@ -37,6 +37,7 @@ class TimeSteppingAt:
     weights: Real
 
     is_reversible = False
+    coupling = None
     modal = None
 
     @property

@@ -13,6 +13,7 @@ from sprung.campaign import LoggerClock
 from sprung.errors import Fault
 from sprung.preprocess.events import Events
 from sprung.preprocess.release import Release, resolution
+from sprung.vehicle import Wheel
 
 FITTED = "in the fitted vehicle every tyre is down for good"
 """Why a fit uses a decay from elsewhere than the recording alone shows."""
@@ -87,6 +88,8 @@ class FreeDecay:
         Times of release and landing, and the reasons for the limits of the decay.
     flight
         Log-likelihood of the flight before it; None where that is not used.
+    pads
+        Wheel stations whose pads drove the vehicle all along, so that it is no free decay but a forced response.
     """
 
     name: str
@@ -104,6 +107,7 @@ class FreeDecay:
     initial_velocity: NDArray[np.float64] = field(default_factory=lambda: np.zeros(0))
     events: Events = field(default_factory=Events)
     flight: FlightLikelihood | None = None
+    pads: tuple[Wheel, ...] = ()
 
     @cached_property
     def usable(self) -> NDArray[np.bool_]:

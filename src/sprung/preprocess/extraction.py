@@ -126,9 +126,9 @@ def extract_decay(
         faults.append(Fault("no-release", recording.name, what, do))
     landing = _find_start(campaign, drop, release, suspension, clipped)
     clips_in_decay = np.asarray(clipped[:, landing.possible :].any(axis=1))
-    faults += _clipping_faults(recording, clipped, clips_in_decay)
+    faults += clipping_faults(recording, clipped, clips_in_decay)
     values = np.where(clips_in_decay[:, None], np.nan, recording.values) if clips_in_decay.any() else recording.values
-    first, (last, why_end) = landing.certain, _find_end(drop)
+    first, (last, why_end) = landing.certain, find_end(drop)
     length = (last - first) / recording.rate
     if length < _SHORTEST:
         what = f"{max(length, 0.0):.2f} s of free vibration, at least {_SHORTEST} s are needed; the drop is left out"
@@ -158,7 +158,7 @@ def _find_start(
     """Find where the decay begins: after the landing, and after the last sample that clips in the landing."""
     recording = drop.recording
     if drop.start is not None:
-        given = max(0, int(np.ceil((drop.start - recording.start) * recording.rate - 1e-6)))
+        given = find_stated_start(drop)
         return Landing(given, given, "given as start")
     if release is None:
         return Landing(0, 0, "no release was found, so the first sample")
@@ -190,7 +190,15 @@ def _find_start(
     return landing._replace(possible=max(landing.possible, after), certain=max(landing.certain, after))
 
 
-def _find_end(drop: DropTest) -> tuple[int, str]:
+def find_stated_start(drop: DropTest) -> int:
+    """Return the first sample that is to be used as the drop states it; 0 where it does not."""
+    if drop.start is None:
+        return 0
+    recording = drop.recording
+    return max(0, int(np.ceil((drop.start - recording.start) * recording.rate - 1e-6)))
+
+
+def find_end(drop: DropTest) -> tuple[int, str]:
     """Find the last sample of the decay, and the reason in words."""
     recording = drop.recording
     last = recording.values.shape[1] - 1
@@ -202,7 +210,22 @@ def _find_end(drop: DropTest) -> tuple[int, str]:
     return last, "its window ends" if ends_with_window else "the recording ends"
 
 
-def _clipping_faults(recording: Recording, clipped: Flags, in_decay: Flags) -> Iterator[Fault]:
+def clipping_faults(recording: Recording, clipped: Flags, in_decay: Flags) -> Iterator[Fault]:
+    """Yield a fault for every channel that clips.
+
+    Parameters
+    ----------
+    recording
+        The recording.
+    clipped
+        Samples at full scale, shape (channel, time).
+    in_decay
+        Which channels clip in the part that is used, so that they are left out, shape (channel,).
+
+    Yields
+    ------
+    Fault
+    """
     for channel in np.flatnonzero(clipped.any(axis=1)).tolist():
         consequence = "it is left out of this drop" if in_decay[channel] else "the decay is used from after them"
         yield Fault(

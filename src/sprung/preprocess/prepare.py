@@ -24,6 +24,7 @@ from sprung.preprocess.exclusion import exclude_copies, exclude_flat_channels
 from sprung.preprocess.extraction import extract_decay, pool_suspension_forces
 from sprung.preprocess.gravity import check_gravity
 from sprung.preprocess.high_pass import undo_high_pass
+from sprung.preprocess.pads import exclude_still_pads, extract_forced_response, is_on_pads
 from sprung.preprocess.release import detect_release, unknown_release
 from sprung.preprocess.spikes import remove_spikes
 from sprung.progress import Progress, Step, counted, silent
@@ -64,11 +65,18 @@ def prepare(campaign: Campaign, progress: Progress = silent) -> Prepared:
     stage = "looking for spikes in the recordings"
     despiked = [remove_spikes(recording) for recording in counted(progress, stage, campaign.recordings)]
     recordings = exclude_copies([align_loggers(recording) for recording, _ in despiked], campaign.drops)
+    recordings = [
+        exclude_still_pads(recording, drop, campaign.sensors)
+        for recording, drop in zip(recordings, campaign.drops, strict=True)
+    ]
     recordings = [exclude_flat_channels(recording) for recording in recordings]
     progress(Step("looking for wrong signs, units and saturation in the recordings"))
     recordings = [check_full_scale(recording, campaign.sensors) for recording in recordings]
     releases = [
-        detect_release(recording.values, recording.rate, active=active_channels(recording)) for recording in recordings
+        None
+        if is_on_pads(drop)
+        else detect_release(recording.values, recording.rate, active=active_channels(recording))
+        for drop, recording in zip(campaign.drops, recordings, strict=True)
     ]
     recordings, releases, sensors = check_gravity(recordings, releases, campaign.sensors)
     # A sensor clips before its drift is removed or its high-pass undone: what it reads then is not within its range.
@@ -92,7 +100,10 @@ def prepare(campaign: Campaign, progress: Progress = silent) -> Prepared:
     names = counted(progress, "finding the decays", unique_drop_names(drops))
     for i, name in enumerate(names):
         drop, release = drops[i], releases[i]
-        decay = extract_decay(corrected, drop, name, release, suspension, clipped[i])
+        if is_on_pads(drop):
+            decay = extract_forced_response(corrected, drop, name, clipped[i])
+        else:
+            decay = extract_decay(corrected, drop, name, release, suspension, clipped[i])
         if isinstance(decay, FreeDecay):
             decays.append(decay)
         else:

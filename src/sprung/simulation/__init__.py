@@ -8,16 +8,20 @@ from sprung.simulation.ground import static_wheel_loads, tyre_rates
 from sprung.simulation.half_sine_bump import drive_over_half_sine_bump
 from sprung.simulation.linear_drop import DropMotion, drop_from_blocks
 from sprung.simulation.nonlinear_motion import BlockSupport, simulate_nonlinear_drops
+from sprung.simulation.pads import DrivenMotion, PadMotion, drive_on_pads
 from sprung.simulation.sensor_model import USUAL_NOISE
 from sprung.simulation.setup import SimulationSetup
 
 __all__ = [
     "USUAL_NOISE",
     "BlockSupport",
+    "DrivenMotion",
     "DropMotion",
+    "PadMotion",
     "SimulationSetup",
     "default_drops",
     "default_sensors",
+    "drive_on_pads",
     "drive_over_half_sine_bump",
     "drop_from_blocks",
     "free_decays",

@@ -13,12 +13,15 @@ from pydantic import ValidationError
 
 from sprung.campaign import Drop
 from sprung.errors import Problems
+from sprung.units import Quantity
 from sprung.vehicle import (
     FULL,
+    PADS,
     STATIONS,
     Layout,
     Load,
     Sensor,
+    SensorPlace,
     Vehicle,
     Wheel,
     parameter_name,
@@ -28,8 +31,11 @@ from sprung.vehicle import (
 
 Record = TypeVar("Record")
 
+_OF_PADS: Mapping[str, Quantity] = {"pad": "displacement", "force": "force"}
+"""What a pad measures, by the name of its channel."""
 
-def default_sensors(vehicle: Vehicle) -> tuple[Sensor, ...]:
+
+def default_sensors(vehicle: Vehicle, *, on_pads: bool = False) -> tuple[Sensor, ...]:
     """Return accelerometers as in the paper: one at each corner of the body, one on each wheel.
 
     Parameters
@@ -37,6 +43,8 @@ def default_sensors(vehicle: Vehicle) -> tuple[Sensor, ...]:
     vehicle
         The corners are 0.1 m ahead of its front and behind its rear axle, at the wider of its half-distances; of a part of a
         vehicle above its wheel stations.
+    on_pads
+        Whether it stands on pads that measure their displacements and the forces under its tyres.
 
     Returns
     -------
@@ -48,7 +56,21 @@ def default_sensors(vehicle: Vehicle) -> tuple[Sensor, ...]:
         x = {1.0: 0.1, -1.0: -vehicle.wheelbase - 0.1, 0.0: 0.0}[end]
         half = max(getattr(vehicle, parameter_name("t", axle, number)) for number in "12") if side else 0.0
         corners.append(Sensor(channel=_channel("body", wheel), on="body", position=(x, side * half, 0.5)))
-    return (*corners, *(Sensor(channel=_channel("wheel", wheel), on=wheel) for wheel in vehicle.layout.wheels))
+    wheels = [Sensor(channel=_channel("wheel", wheel), on=wheel) for wheel in vehicle.layout.wheels]
+    pads = [
+        Sensor(channel=_channel(name, wheel), on=cast("SensorPlace", pad), quantity=quantity)
+        for name, quantity in _OF_PADS.items()
+        for pad, wheel in PADS.items()
+        if on_pads and wheel in vehicle.layout.wheels
+    ]
+    return (*corners, *wheels, *pads)
+
+
+def has_pads(drops: Iterable[Drop | Mapping[str, Any]]) -> bool:
+    """Return whether pads drive the vehicle in any of some drops, records or mappings."""
+    return any(
+        (drop.excitation if isinstance(drop, Drop) else drop.get("excitation", "drop")) == "pads" for drop in drops
+    )
 
 
 def _channel(what: str, wheel: Wheel) -> str:

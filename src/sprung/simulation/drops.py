@@ -13,8 +13,10 @@ import numpy as np
 from sprung.campaign import DEFAULT_HEIGHT, Campaign, Drop, KnownValueLike, ModelChoice, read_vehicle
 from sprung.errors import Problems
 from sprung.progress import Progress, Step, counted, silent
+from sprung.simulation.arguments import has_pads
 from sprung.simulation.linear_drop import drop_from_blocks
 from sprung.simulation.nonlinear_motion import BlockSupport, simulate_nonlinear_drops
+from sprung.simulation.pads import PadMotion, drive_on_pads
 from sprung.simulation.setup import SimulationSetup, check_not_negative
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import Load, Sensor, Vehicle, after_rest, nonlinear_elements
@@ -36,6 +38,7 @@ def simulate(
     model: ModelChoice | Mapping[str, Any] | None = None,
     gravity: float = STANDARD_GRAVITY,
     sensor_errors: bool = False,
+    pads: PadMotion | None = None,
     progress: Progress = silent,
 ) -> Campaign:
     """Simulate the drop tests of a vehicle, as they would have been recorded.
@@ -71,6 +74,9 @@ def simulate(
     sensor_errors
         Whether gain, tilt, place and delay of each sensor deviate from what is stated, drawn from its ``gain_std``,
         ``tilt_std``, ``position_std`` and ``delay_std``. Without, all sensors are exact, and the campaign says so.
+    pads
+        How the pads under the wheels of a drop move whose excitation is ``pads``; a random motion of half a minute by default.
+        Its duration holds instead of `duration` and `rest`.
     progress
         Called with each drop that is begun.
 
@@ -116,14 +122,27 @@ def simulate(
         sensor_errors=sensor_errors,
     )
     check_not_negative(problems, duration=duration, rest=rest)
+    pads = pads or PadMotion()
+    pads.check(problems)
+    is_linear = not nonlinear_elements(vehicle.tracks, vehicle.extras)
+    if has_pads(setup.drops) and not is_linear:
+        found = f"a vehicle with {', '.join(vehicle.extras)}"
+        problems.add("simulate: drops", found, "a linear vehicle on pads that move", "Leave out its nonlinear terms.")
     problems.raise_if_any()
 
     before = math.ceil(rest * rate - 1e-9)
     after = round((rest + duration) * rate) - before
     first = max(before / rate - rest, 0.0)
     loaded = {load.name: load for load in setup.loads}
+    driven = {
+        i: drive_on_pads(
+            vehicle, loaded[drop.load], drop.wheels, pads.displacements(drop.wheels, i), rate, pads.samples(rate)
+        )
+        for i, drop in enumerate(setup.drops)
+        if drop.excitation == "pads"
+    }
     released, motions = [], []
-    for drop in counted(progress, "simulating the drops", setup.drops):
+    for drop in counted(progress, "simulating the drops", [drop for drop in setup.drops if drop.excitation != "pads"]):
         height = DEFAULT_HEIGHT if drop.height is None else drop.height
         released.append(replace(drop, height=height))
         with problems.collect():
@@ -132,12 +151,16 @@ def simulate(
             )
             motions.append(fall.motion(1 / rate, after, first))
     problems.raise_if_any()
-    if nonlinear_elements(vehicle.tracks, vehicle.extras):
+    if released and not is_linear:
         progress(Step(f"simulating the drops with {', '.join(vehicle.extras)}"))
         blocks = [BlockSupport(loaded[drop.load], drop.wheels, drop.height or DEFAULT_HEIGHT) for drop in released]
         motions = simulate_nonlinear_drops(vehicle, blocks, 1 / rate, after, first, gravity)
-    recorded = (after_rest(motion, before) for motion in motions)
-    campaign = setup.campaign(released, recorded, "drop from blocks", np.random.default_rng(seed), sensor_errors)
+    free = ((drop, after_rest(motion, before)) for drop, motion in zip(released, motions, strict=True))
+    recorded = [(drop, driven[i]) if i in driven else next(free) for i, drop in enumerate(setup.drops)]
+    drops_in_order, motions_in_order = zip(*recorded, strict=True)
+    campaign = setup.campaign(
+        drops_in_order, motions_in_order, "drop from blocks", np.random.default_rng(seed), sensor_errors
+    )
     return (
         campaign
         if file is None

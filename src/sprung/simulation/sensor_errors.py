@@ -39,7 +39,10 @@ class SensorErrors:
     def drawn(cls, sensors: Sequence[Sensor], random: np.random.Generator) -> SensorErrors:
         """Draw the deviations of sensors from normal distributions."""
         gain, tilt, place, delay = np.array(
-            [(one.gain_std, np.radians(one.tilt_std), one.position_std, one.delay_std) for one in sensors]
+            [
+                (one.gain_std, 0.0 if one.pad else np.radians(one.tilt_std), one.position_std, one.delay_std)
+                for one in sensors
+            ]
         ).T
         number = len(sensors)
         return cls(
@@ -49,7 +52,9 @@ class SensorErrors:
             delay * random.standard_normal(number),
         )
 
-    def readings(self, vehicle: Vehicle, sensors: Sequence[Sensor], motion: Motion, rate: float) -> Array:
+    def readings(
+        self, vehicle: Vehicle, sensors: Sequence[Sensor], motion: Motion, rate: float, of_pads: Array | float = 0.0
+    ) -> Array:
         """Return what the sensors read of a motion, without gravity at rest.
 
         Parameters
@@ -62,6 +67,8 @@ class SensorErrors:
             Of the coordinates, SI, shape (coordinate, time) each.
         rate
             Samples per second.
+        of_pads
+            What the pads' displacements add for sensors without errors, SI, shape (channel, time).
 
         Returns
         -------
@@ -81,7 +88,7 @@ class SensorErrors:
                 height = 0.0 if vehicle.cg_height is None else sensor.position[2] - vehicle.cg_height
                 readings[channel] += forward * (height * by_pitch - pitch)
                 readings[channel] -= left * (height * by_roll - roll)
-        readings *= 1 + self.gain[:, None]
+        readings = (readings + of_pads) * (1 + self.gain[:, None])
         return np.array([_delayed(*pair, rate) for pair in zip(readings, self.delay.tolist(), strict=True)])
 
 

@@ -22,13 +22,25 @@ from sprung.campaign import (
     unique_recording_names,
 )
 from sprung.errors import Problems, did_you_mean
-from sprung.simulation.arguments import check_unique, default_drops, default_sensors, name_files, record, records
+from sprung.simulation.arguments import (
+    check_unique,
+    default_drops,
+    default_sensors,
+    has_pads,
+    name_files,
+    record,
+    records,
+)
+from sprung.simulation.pads import DrivenMotion
 from sprung.simulation.sensor_errors import SensorErrors
 from sprung.simulation.sensor_model import Sensing
 from sprung.uncertainty import KnownValue
 from sprung.vehicle import EMPTY, Load, Motion, Readout, Sensor, Vehicle
 
 Array = NDArray[np.float64]
+
+_ON_PADS = {"pads": "response to pads"}
+"""What is simulated, for the history, where that is no drop."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,7 +96,8 @@ class SimulationSetup:
         problems
             Takes what does not fit.
         """
-        chosen_sensors = default_sensors(vehicle) if sensors is None else records(Sensor, "sensors", sensors, problems)
+        usual = default_sensors(vehicle, on_pads=has_pads(drops or ()))
+        chosen_sensors = usual if sensors is None else records(Sensor, "sensors", sensors, problems)
         placed = [
             sensor.on is not None and not (sensor.needs_position and sensor.position is None)
             for sensor in chosen_sensors
@@ -142,7 +155,7 @@ class SimulationSetup:
     def campaign(
         self,
         drops: Sequence[Drop],
-        motions: Iterable[Motion],
+        motions: Iterable[Motion | DrivenMotion],
         what: str,
         random: np.random.Generator,
         sensor_errors: bool = False,
@@ -154,7 +167,8 @@ class SimulationSetup:
         drops
             One for each recording, with a file name.
         motions
-            In each of them, of the coordinates, from static equilibrium with the load, SI, shape (coordinate, time).
+            In each of them, of the coordinates, from static equilibrium with the load, SI, shape (coordinate, time); on pads
+            with theirs.
         what
             What was simulated, for the history.
         random
@@ -163,14 +177,9 @@ class SimulationSetup:
             Whether the sensors deviate from what is stated of them.
         """
         sensors, rate = self.sensing.sensors, self.sensing.rate
-        if sensor_errors:
-            # A generator of their own: noise is the same with them and without.
-            errors = SensorErrors.drawn(sensors, random.spawn(1)[0])
-            seen = [errors.readings(self.vehicle, sensors, motion, rate) for motion in motions]
-        else:
-            parameters = self.vehicle.parameters
-            readout = Readout.of(sensors, tuple(parameters))
-            seen = [readout.read(list(parameters.values()), motion) for motion in motions]
+        # A generator of their own: noise is the same with them and without.
+        errors = SensorErrors.drawn(sensors, random.spawn(1)[0]) if sensor_errors else None
+        seen = [self._seen(motion, errors) for motion in motions]
         recorded = [
             drop.with_recording(
                 Recording(
@@ -179,7 +188,9 @@ class SimulationSetup:
                     values=self.sensing.readings(reading, random),
                     start=0.0,
                     rate=rate,
-                    history=(f"simulated: {what} of {self.vehicle.name}, load '{drop.load}'",),
+                    history=(
+                        f"simulated: {_ON_PADS.get(drop.excitation, what)} of {self.vehicle.name}, load '{drop.load}'",
+                    ),
                 )
             )
             for drop, name, reading in zip(drops, unique_recording_names(drops), seen, strict=True)
@@ -197,6 +208,17 @@ class SimulationSetup:
             known={name: quantity for name, quantity in self.known.items() if name != "wheelbase"},
             model=self.model,
         )
+
+    def _seen(self, motion: Motion | DrivenMotion, errors: SensorErrors | None) -> Array:
+        """Return what the sensors read of a motion beside gravity, SI, shape (channel, time)."""
+        vehicle, sensors, rate = self.vehicle, self.sensing.sensors, self.sensing.rate
+        of_pads: Array | float = motion.readings(vehicle, sensors) if isinstance(motion, DrivenMotion) else 0.0
+        of_coordinates = motion.motion if isinstance(motion, DrivenMotion) else motion
+        if errors is not None:
+            return errors.readings(vehicle, sensors, of_coordinates, rate, of_pads)
+        parameters = vehicle.parameters
+        readout = Readout.of(sensors, tuple(parameters))
+        return np.asarray(readout.read(list(parameters.values()), of_coordinates) + of_pads)
 
 
 def _check_plausible(

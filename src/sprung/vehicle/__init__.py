@@ -52,6 +52,7 @@ from sprung.vehicle.nuisances import (
     parameter_of,
     sensor_unknown,
 )
+from sprung.vehicle.pads import PadInputs
 from sprung.vehicle.paper_vehicles import SCHOOL_BUS, TABLE_1_CAR
 from sprung.vehicle.parameter_values import all_names
 from sprung.vehicle.parameters import (
@@ -118,6 +119,7 @@ __all__ = [
     "NonlinearForces",
     "NonlinearModel",
     "NotNegative",
+    "PadInputs",
     "Parameter",
     "Positive",
     "Readout",

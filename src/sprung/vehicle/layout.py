@@ -158,6 +158,27 @@ def parameter_name(symbol: str, axle: str, number: str = "") -> str:
     return f"{separated}{axle}{number}"
 
 
+def rates_of_tyre(station: Wheel, names: Collection[str]) -> dict[int, dict[str, float]]:
+    """Return the parameters that make up the rate of a tyre, and its damping.
+
+    Parameters
+    ----------
+    station
+        The wheel station.
+    names
+        Parameters of the vehicle.
+
+    Returns
+    -------
+    dict of int to dict
+        By the order of the derivative of the deflection, 0 or 1: the factors of the parameters, by name.
+    """
+    _, axle, side, _ = STATIONS[station]
+    parts = {0: {f"k_t{axle}": 1.0, f"d_kt{axle}": side}, 1: {f"c_t{axle}": 1.0}}
+    rates = {order: {name: factor for name, factor in own.items() if name in names} for order, own in parts.items()}
+    return {order: own for order, own in rates.items() if own}
+
+
 LinearLaw = Literal["mass", "damper", "spring"]
 """Law of a linear element: the matrix M, C or K that it adds to."""
 

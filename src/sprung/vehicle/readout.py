@@ -104,6 +104,22 @@ class Readout:
         return bool(self._has[_DELAY])
 
     @cached_property
+    def gain_positions(self) -> tuple[tuple[int, int], ...]:
+        """Each channel whose gain is unknown, and the position of that among the parameters."""
+        positions = self.positions[:, _GAIN].tolist()
+        return tuple((channel, position) for channel, position in enumerate(positions) if position >= 0)
+
+    def gains(self, values: Array) -> Array:
+        """Return by what each channel multiplies what it should read, 1 + γ, dimensionless, shape (..., channel).
+
+        Parameters
+        ----------
+        values
+            Parameters, SI, shape (..., parameter).
+        """
+        return 1 + self._unknown(_GAIN, values)
+
+    @cached_property
     def delay_positions(self) -> tuple[tuple[int, int], ...]:
         """Each channel whose delay is unknown, and the position of that among the parameters."""
         positions = self.positions[:, _DELAY].tolist()

@@ -15,7 +15,7 @@ from sprung.units import SI_UNITS, Quantity, quantity_name, si_factor
 from sprung.vehicle import kinematics
 from sprung.vehicle.checked_record import checked_record
 from sprung.vehicle.kinematics import Row
-from sprung.vehicle.layout import STATIONS, Wheel, parameter_name
+from sprung.vehicle.layout import STATIONS, Wheel, parameter_name, rates_of_tyre
 from sprung.vehicle.load import Finite, Positive
 from sprung.vehicle.nuisances import SensorQuantity, sensor_unknown
 
@@ -153,10 +153,14 @@ class Sensor:
             If its place is not known.
         """
         if self.quantity == "force":
-            _, axle, *_ = STATIONS[PADS[str(self.on)]]
-            below = kinematics.wheel(PADS[str(self.on)])
-            of_tyre = {0: parameter_name("k_t", axle), 1: parameter_name("c_t", axle)}
-            return {order: below.times(name, -1.0) for order, name in of_tyre.items() if name in names}
+            station = PADS[str(self.on)]
+            coordinate = STATIONS[station].coordinate
+            return {
+                order: Row({}, {name: {coordinate: -factor} for name, factor in rates.items()})
+                for order, rates in rates_of_tyre(station, names).items()
+            }
+        if self.pad is not None:
+            return {0: Row({})}  # a pad's own displacement is no motion of the vehicle
         return {_ORDERS[self.quantity]: self._row(names)}
 
     def _row(self, names: Collection[str]) -> Row:
@@ -213,7 +217,7 @@ class Sensor:
         times the angle of the body, which at an angular frequency ω is g/ω² times the angular acceleration: as if the sensor
         sat τ g/ω² elsewhere. That is 0.16 m at 1.25 Hz, and nothing at wheel hop. What a height adds is for `at_height_above`.
         """
-        tilt = math.radians(self.tilt_std)
+        tilt = 0.0 if self.pad else math.radians(self.tilt_std)
         pendulum = _PENDULUM if self.reads_gravity else 0.0
         place = math.hypot(self.position_std, tilt * pendulum) if self.position is not None else 0.0
         known: dict[SensorQuantity, KnownValue] = {

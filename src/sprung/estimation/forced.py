@@ -1,0 +1,251 @@
+"""The likelihood of records of a linear vehicle on pads that move, in the frequency domain, with noise on its inputs too."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sprung.estimation.eliminated_inputs import EliminatedEnds, EliminatedInputs
+from sprung.estimation.forced_response import ForcedResponse
+from sprung.estimation.objective import NoiseCoupling
+from sprung.estimation.spectral_lines import SpectralLines, lines_of
+from sprung.estimation.starts import VehicleSize
+from sprung.preprocess import FreeDecay
+from sprung.vehicle import LinearModel, PadInputs, Readout, Sensor, Wheel
+
+Real = NDArray[np.float64]
+
+_ENOUGH, _MOST = 150, 4
+"""Lines of each record, and records, that are enough to rank vehicles."""
+
+_LEAST_NOISE = 0.25
+"""Part of the noise above all lines that a channel has at least among them. Without a bound, a channel without noise that
+explains the motion of a pad alone, while the others err, would be a solution far from all vehicles."""
+
+
+@dataclass(frozen=True, eq=False)
+class ForcedObjective:
+    """The likelihood of records of a linear vehicle on pads that move.
+
+    Attributes
+    ----------
+    decays
+        What is fitted.
+    models
+        Equations of motion by load name, all over the same parameters.
+    sensors
+        The sensors over the fit's parameters, in the order of the records' channels.
+    channels
+        The same as they are stated.
+    transformed
+        The lines of the records; empty where these are still to be transformed.
+    """
+
+    decays: Sequence[FreeDecay]
+    models: Mapping[str, LinearModel]
+    sensors: Readout
+    channels: Sequence[Sensor]
+    transformed: tuple[SpectralLines, ...] = ()
+
+    @cached_property
+    def lines(self) -> tuple[SpectralLines, ...]:
+        """The lines that are fitted, one record after the other."""
+        return self.transformed or lines_of(self.decays)
+
+    @cached_property
+    def pads(self) -> Mapping[tuple[Wheel, ...], PadInputs]:
+        """What pads add to the equations, by the wheels over those that move."""
+        driven = {one.wheels for one in self.lines}
+        return {wheels: PadInputs.of(wheels, self.channels, self.sensors.names) for wheels in driven}
+
+    @cached_property
+    def spent(self) -> Real:
+        """Numbers in the lines that are spent on the unknown inputs, shape (drop, channel)."""
+        return np.array([one.spent_on_inputs for one in self.lines])
+
+    @cached_property
+    def observations(self) -> Real:
+        """Numbers in the lines by record and channel beyond those that are spent on inputs, shape (drop, channel)."""
+        counts = np.array([one.counts for one in self.lines])
+        return np.asarray(np.maximum(counts - self.spent, np.minimum(counts, 1.0)))
+
+    @cached_property
+    def energy(self) -> Real:
+        """Sum of squares of the lines of each channel beyond those that are spent on inputs, SI, shape (channel,)."""
+        counts = np.maximum(np.sum([one.counts for one in self.lines], axis=0), 1.0)
+        whole = np.sum([one.energy for one in self.lines], axis=0)
+        return np.asarray(whole * self.observations.sum(axis=0) / counts)
+
+    @cached_property
+    def least_variance(self) -> Real:
+        """Noise variance that a channel has at least, SI, shape (channel,)."""
+        noise = np.min([np.where(one.usable, one.noise, np.inf) for one in self.lines], axis=0)
+        return np.where(np.isfinite(noise), _LEAST_NOISE * noise, 0.0)
+
+    def at(self, values: Real, weights: Real) -> ForcedAt:
+        """Evaluate at parameter values, SI, shape (parameter,), with weights 1/σ² of the channels, shape (channel,)."""
+        responses = tuple(
+            tuple(
+                ForcedResponse(one, self.models[one.load], self.sensors, self.pads[one.wheels], values, part)
+                for part in one.blocks
+            )
+            for one in self.lines
+        )
+        return ForcedAt(self, values, weights, responses)
+
+    def unexplained(self, vehicles: Real, weights: Real) -> Real:
+        """Return what vehicles leave of some of the lines, to rank them as starts.
+
+        Parameters
+        ----------
+        vehicles
+            Parameters, SI, shape (vehicle, parameter).
+        weights
+            1/σ² of each channel, SI, shape (channel,).
+
+        Returns
+        -------
+        ndarray
+            Residual sums of squares over their energy, dimensionless, shape (vehicle, channel).
+        """
+        few = tuple(one.decimated(_ENOUGH) for one in self.lines[:_MOST])
+        small = replace(self, decays=self.decays[: len(few)], transformed=few)
+        energy = np.sum([one.energy for one in few], axis=0)
+        sums = np.array([small.at(vehicle, weights).residual_sums.sum(axis=0) for vehicle in vehicles])
+        return np.asarray(sums / np.where(energy > 0, energy, 1.0))
+
+    def estimate_start(self, sensors: Sequence[Sensor], size: VehicleSize, given: Mapping[str, float]) -> None:
+        """Return None: starts of driven vehicles are ranked."""
+
+    def with_decays(self, decays: Sequence[FreeDecay]) -> ForcedObjective:
+        """Return the objective of other records with the same models and sensors."""
+        return ForcedObjective(decays, self.models, self.sensors, self.channels)
+
+    def with_models(self, models: Mapping[str, LinearModel], sensors: Readout) -> ForcedObjective:
+        """Return the objective of other models of the same records, which are transformed once."""
+        return ForcedObjective(self.decays, models, sensors, self.channels, self.lines)
+
+
+@dataclass(frozen=True, eq=False)
+class ForcedAt:
+    """The likelihood of driven records at parameter values and noise levels.
+
+    Attributes
+    ----------
+    objective
+        The likelihood.
+    values
+        Parameters, SI, shape (parameter,).
+    weights
+        1/σ² of each channel, shape (channel,).
+    responses
+        Of the vehicle at the lines of each record, block by block.
+    """
+
+    objective: ForcedObjective
+    values: Real
+    weights: Real
+    responses: tuple[tuple[ForcedResponse, ...], ...]
+
+    is_reversible = True
+    by_window = None
+    modal = None
+
+    def reweighted(self, weights: Real) -> ForcedAt:
+        """Return the likelihood with other weights, the response being the same."""
+        return replace(self, weights=weights)
+
+    def moved(self, values: Real) -> ForcedAt:
+        """Return the likelihood at other parameter values, SI, shape (parameter,)."""
+        return self.objective.at(values, self.weights)
+
+    def with_optimal_states(self) -> ForcedAt:
+        """Return the likelihood itself: the ends are eliminated."""
+        return self
+
+    def of_drop(self, drop: int) -> ForcedAt:
+        """Return the likelihood of one record alone, by its position."""
+        return self.objective.with_decays([self.objective.decays[drop]]).at(self.values, self.weights)
+
+    @cached_property
+    def _left(self) -> tuple[EliminatedEnds, ...]:
+        scale = np.sqrt(self.weights)
+        return tuple(
+            EliminatedEnds([EliminatedInputs(block, scale * block.lines.usable) for block in blocks])
+            for blocks in self.responses
+        )
+
+    @cached_property
+    def residual_sums(self) -> Real:
+        """Residual sums of squares, SI, shape (drop, channel)."""
+        return np.array([left.residual_sums for left in self._left])
+
+    @cached_property
+    def penalty(self) -> float:
+        """Twice the negative log-likelihood of the ends of all records."""
+        return sum(left.penalty for left in self._left)
+
+    @cached_property
+    def leverage(self) -> Real:
+        """Number of eliminated unknowns that each channel determines beyond those spent on inputs, shape (channel,)."""
+        whole = np.sum([left.leverage for left in self._left], axis=0)
+        return np.asarray(whole - self.objective.spent.sum(axis=0))
+
+    @cached_property
+    def coupling(self) -> NoiseCoupling:
+        """How the noise of channels mixes in their residuals."""
+        expected = np.asarray(np.sum([left.coupling for left in self._left], axis=0))
+        return NoiseCoupling(expected, self.objective.least_variance)
+
+    @cached_property
+    def gradient(self) -> Real:
+        """Of the log-likelihood by the parameters, per SI unit, shape (parameter,)."""
+        return np.asarray(self.by_drop[0].sum(axis=0))
+
+    @cached_property
+    def information(self) -> Real:
+        """Fisher information of the parameters, shape (parameter, parameter)."""
+        return np.asarray(self.by_drop[1].sum(axis=0))
+
+    @cached_property
+    def by_drop(self) -> tuple[Real, Real]:
+        """Gradient and information of each record; shapes (drop, parameter) and (drop, parameter, parameter)."""
+        gradients, informations = zip(*(left.score for left in self._left), strict=True)
+        return np.array(gradients), np.array(informations)
+
+    @cached_property
+    def fitted(self) -> tuple[Real, ...]:
+        """Modelled records, their means subtracted, SI; one array of shape (channel, time) per record.
+
+        What is slower than the lines that are fitted is as it was measured.
+        """
+        scale = np.where(self.weights > 0, self.weights, 1.0) ** -0.5
+        found = []
+        for decay, lines, left in zip(self.objective.decays, self.objective.lines, self._left, strict=True):
+            remains = lines.to_time(np.where(lines.usable, left.residual * scale, 0.0))
+            found.append(lines.up_to_highest(decay) - remains)
+        return tuple(found)
+
+    @cached_property
+    def states(self) -> Real:
+        """{X, Ẋ} of each record at its first sample, as far as the lines tell, SI, shape (drop, state)."""
+        return np.array([left.states(1)[:, 0] for left in self._left])
+
+    def motion(self, drop: int, before: int, after: int) -> Real:
+        """Return {X, Ẋ} of a record, from its first sample on; NaN before, where nothing is known of the pads.
+
+        Parameters
+        ----------
+        drop
+            Its position.
+        before, after
+            How many samples before the first one, and how many from it on.
+        """
+        known = self._left[drop].states(after)
+        whole = np.full((len(known), before + after), np.nan)
+        whole[:, before : before + known.shape[1]] = known
+        return whole

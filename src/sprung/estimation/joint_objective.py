@@ -1,0 +1,240 @@
+"""The likelihood of free decays and of driven records of one vehicle together: the sum of both."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sprung.estimation.closed_form import ClosedFormObjective
+from sprung.estimation.forced import ForcedObjective
+from sprung.estimation.objective import LinearObjective, NoiseCoupling, ObjectiveAt
+from sprung.estimation.starts import VehicleSize
+from sprung.preprocess import FreeDecay
+from sprung.vehicle import LinearModel, Readout, Sensor
+
+Real = NDArray[np.float64]
+
+
+def linear_objective(
+    decays: Sequence[FreeDecay], models: Mapping[str, LinearModel], sensors: Readout, channels: Sequence[Sensor]
+) -> LinearObjective:
+    """Return the likelihood of records of a linear vehicle, free or driven or both.
+
+    Parameters
+    ----------
+    decays
+        The records.
+    models
+        Equations of motion by load name, all over the same parameters.
+    sensors
+        The sensors over the fit's parameters.
+    channels
+        The same as they are stated.
+
+    Returns
+    -------
+    LinearObjective
+    """
+    free = [decay for decay in decays if not decay.pads]
+    driven = [decay for decay in decays if decay.pads]
+    if not driven:
+        return ClosedFormObjective(tuple(decays), models, sensors)
+    if not free:
+        return ForcedObjective(tuple(decays), models, sensors, tuple(channels))
+    both = linear_objective(free, models, sensors, channels), linear_objective(driven, models, sensors, channels)
+    return JointObjective(tuple(decays), both)
+
+
+@dataclass(frozen=True, eq=False)
+class JointObjective:
+    """The likelihood of several kinds of records.
+
+    Attributes
+    ----------
+    decays
+        What is fitted, in order.
+    parts
+        The objectives of free decays and of driven records; each has its own records in their order.
+    """
+
+    decays: Sequence[FreeDecay]
+    parts: tuple[LinearObjective, LinearObjective]
+
+    @cached_property
+    def positions(self) -> tuple[tuple[int, ...], tuple[int, ...]]:
+        """Positions of the records of each part."""
+        free = tuple(i for i, decay in enumerate(self.decays) if not decay.pads)
+        return free, tuple(i for i, decay in enumerate(self.decays) if decay.pads)
+
+    def in_order(self, by_part: Sequence[Real]) -> Real:
+        """Return what belongs to each record in the order of all records."""
+        found = np.empty((len(self.decays), *by_part[0].shape[1:]))
+        for positions, own in zip(self.positions, by_part, strict=True):
+            found[list(positions)] = own
+        return found
+
+    def place(self, drop: int) -> tuple[int, int]:
+        """Return the part that a record belongs to, and its position there."""
+        part = int(bool(self.decays[drop].pads))
+        return part, self.positions[part].index(drop)
+
+    @property
+    def sensors(self) -> Readout:
+        """The sensors over the fit's parameters."""
+        return self.parts[0].sensors
+
+    @cached_property
+    def observations(self) -> Real:
+        """Samples by drop and channel, 0 where a channel is left out; shape (drop, channel)."""
+        return self.in_order([part.observations for part in self.parts])
+
+    @cached_property
+    def energy(self) -> Real:
+        """Sum of squares of all centred records of each channel, SI, shape (channel,)."""
+        return np.asarray(np.sum([part.energy for part in self.parts], axis=0))
+
+    def at(self, values: Real, weights: Real) -> JointAt:
+        """Evaluate at parameter values, SI, shape (parameter,), with weights 1/σ² of the channels, shape (channel,)."""
+        free, driven = (part.at(values, weights) for part in self.parts)
+        return JointAt(self, (free, driven))
+
+    def with_decays(self, decays: Sequence[FreeDecay]) -> LinearObjective:
+        """Return the objective of other decays with the same models and sensors."""
+        free = [decay for decay in decays if not decay.pads]
+        driven = [decay for decay in decays if decay.pads]
+        if not free or not driven:
+            return self.parts[int(not free)].with_decays(decays)
+        return JointObjective(tuple(decays), (self.parts[0].with_decays(free), self.parts[1].with_decays(driven)))
+
+    def with_models(self, models: Mapping[str, LinearModel], sensors: Readout) -> JointObjective:
+        """Return the objective of other models of the same records."""
+        free, driven = (part.with_models(models, sensors) for part in self.parts)
+        return replace(self, parts=(free, driven))
+
+    def unexplained(self, vehicles: Real, weights: Real) -> Real:
+        """Return what vehicles leave of some of the records, to rank them as starts; (vehicle, channel)."""
+        return np.asarray(np.sum([part.unexplained(vehicles, weights) for part in self.parts], axis=0))
+
+    def estimate_start(
+        self, sensors: Sequence[Sensor], size: VehicleSize, given: Mapping[str, float]
+    ) -> dict[str, float] | None:
+        """Return the parameters of a vehicle near the one that is sought, by the first part that shows it."""
+        found = (part.estimate_start(sensors, size, given) for part in self.parts)
+        return next((one for one in found if one is not None), None)
+
+
+@dataclass(frozen=True, eq=False)
+class JointAt:
+    """The likelihood of several kinds of records at parameter values and noise levels.
+
+    Attributes
+    ----------
+    objective
+        The likelihood.
+    parts
+        Those of free decays and of driven records.
+    """
+
+    objective: JointObjective
+    parts: tuple[ObjectiveAt, ObjectiveAt]
+
+    is_reversible = True
+    by_window = None
+    modal = None
+
+    @property
+    def values(self) -> Real:
+        """Parameters, SI, shape (parameter,)."""
+        return self.parts[0].values
+
+    @property
+    def weights(self) -> Real:
+        """1/σ² of each channel, shape (channel,)."""
+        return self.parts[0].weights
+
+    def reweighted(self, weights: Real) -> JointAt:
+        """Return the likelihood with other weights."""
+        free, driven = (part.reweighted(weights) for part in self.parts)
+        return replace(self, parts=(free, driven))
+
+    def moved(self, values: Real) -> JointAt:
+        """Return the likelihood at other parameter values, SI, shape (parameter,)."""
+        free, driven = (part.moved(values) for part in self.parts)
+        return replace(self, parts=(free, driven))
+
+    def with_optimal_states(self) -> JointAt:
+        """Return the likelihood itself: initial states are eliminated."""
+        return self
+
+    def of_drop(self, drop: int) -> ObjectiveAt:
+        """Return the likelihood of one record alone, by its position."""
+        part, position = self.objective.place(drop)
+        return self.parts[part].of_drop(position)
+
+    @cached_property
+    def residual_sums(self) -> Real:
+        """Residual sums of squares, SI, shape (drop, channel)."""
+        return self.objective.in_order([part.residual_sums for part in self.parts])
+
+    @property
+    def penalty(self) -> float:
+        """Twice the negative log-likelihood of eliminated unknowns that have a prior."""
+        return sum(part.penalty for part in self.parts)
+
+    @cached_property
+    def leverage(self) -> Real:
+        """Number of eliminated unknowns that each channel determines, shape (channel,)."""
+        return np.asarray(np.sum([part.leverage for part in self.parts], axis=0))
+
+    @cached_property
+    def coupling(self) -> NoiseCoupling:
+        """How the noise of channels mixes in their residuals."""
+        expected, least = np.zeros((len(self.weights), len(self.weights))), np.zeros(len(self.weights))
+        for objective, part in zip(self.objective.parts, self.parts, strict=True):
+            coupling = part.coupling
+            if coupling is None:
+                offsets = np.sum(objective.observations > 0, axis=0)
+                expected += np.diag(objective.observations.sum(axis=0) - offsets - part.leverage)
+            else:
+                expected += coupling.expected
+                least = np.maximum(least, coupling.least)
+        return NoiseCoupling(expected, least)
+
+    @cached_property
+    def gradient(self) -> Real:
+        """Of the log-likelihood by the parameters, per SI unit, shape (parameter,)."""
+        return np.asarray(np.sum([part.gradient for part in self.parts], axis=0))
+
+    @cached_property
+    def information(self) -> Real:
+        """Fisher information of the parameters, shape (parameter, parameter)."""
+        return np.asarray(np.sum([part.information for part in self.parts], axis=0))
+
+    @cached_property
+    def by_drop(self) -> tuple[Real, Real]:
+        """Gradient and information of each drop; shapes (drop, parameter) and (drop, parameter, parameter)."""
+        gradients, informations = zip(*(part.by_drop for part in self.parts), strict=True)
+        return self.objective.in_order(gradients), self.objective.in_order(informations)
+
+    @cached_property
+    def fitted(self) -> tuple[Real, ...]:
+        """Modelled records, their means subtracted, SI; one array of shape (channel, time) per record."""
+        return tuple(self._of(drop, [part.fitted for part in self.parts]) for drop in range(len(self.objective.decays)))
+
+    def _of(self, drop: int, by_part: Sequence[Sequence[Real]]) -> Real:
+        part, position = self.objective.place(drop)
+        return by_part[part][position]
+
+    @cached_property
+    def states(self) -> Real:
+        """{X, Ẋ} of each record at its first sample, SI, shape (drop, state)."""
+        return self.objective.in_order([part.states for part in self.parts])
+
+    def motion(self, drop: int, before: int, after: int) -> Real:
+        """Return {X, Ẋ} of a record around its first sample, SI, shape (state, before + after)."""
+        part, position = self.objective.place(drop)
+        return self.parts[part].motion(position, before, after)
