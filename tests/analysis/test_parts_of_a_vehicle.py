@@ -16,6 +16,7 @@ PART = pytest.mark.parametrize("vehicle", PARTS.values(), ids=PARTS)
 
 WITH_TERMS = (
     QUARTER.with_values(k_d=2.4e5, k_z=3e3, c_z=150.0),
+    ROLL_PLANE.with_values(k_x=15e3, c_x=4.8e3),
     ROLL_PLANE.with_values(y_s=0.02, d_ks=400.0, d_kt=2500.0, d_cs=30.0),
     PITCH_PLANE.with_values(m_e=60.0, k_e=60.0 * 75.0**2, c_e=700.0, x_e=0.1),
 )

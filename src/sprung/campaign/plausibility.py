@@ -81,7 +81,7 @@ LIMITS: Mapping[str, Limits] = {
     **_of_axles(Limits(500, 1e8, "N/m", zero=True), "k_b"),
     **_of_axles(Limits(5e3, 1e10, "N/m"), "k_d"),
     **_of_axles(Limits(0, 1e6, "N s/m"), "c_d"),
-    **_of_axles(Limits(0, 1e7, "N/m"), "k_z"),
+    **_of_axles(Limits(0, 1e7, "N/m"), "k_z", "k_x"),
     **_of_axles(Limits(1, 1e7, "N s/m"), "c_z"),
     **_of_axles(Limits(0, 1e5, "N"), "F"),
     "wheelbase": Limits(0.6, 12.0, "m"),

@@ -25,7 +25,10 @@ SEPARATE_TRACKS = "tracks apart"
 ENGINE, OCCUPANTS, TWIST, BENDING = "engine", "occupants", "twist", "bending"
 """Terms with starts of their own: masses on springs, and a body that is not one rigid mass."""
 
-STARTED_LATER = frozenset({ENGINE, OCCUPANTS, TWIST, BENDING, SEAT_LOAD})
+INTERCONNECTION = "interconnection"
+"""Left and right connected by a fluid line."""
+
+STARTED_LATER = frozenset({ENGINE, INTERCONNECTION, OCCUPANTS, TWIST, BENDING, SEAT_LOAD})
 """Terms that are put into a vehicle which is fitted already: nothing determines them before."""
 
 _TYRE_DAMPING = 0.06
@@ -46,6 +49,9 @@ branch: their forces are the same function of frequency."""
 
 _HOP, _LOSS = 12.0, 0.1
 """Hz at which a wheel usually hops, and the loss factor of rubber there."""
+
+_USUAL_FLOW = 0.3
+"""s in which the rate between two sides usually relaxes that a fluid line connects."""
 
 _RIGID = 1e5
 """Rate of a damper mount over that of the spring, from which it is rigid in practice: no matrix holds an infinite one."""
@@ -76,6 +82,15 @@ def _inboard_share(values: Values, axle: str) -> float:
 def _gravity(values: Values) -> float:
     """Share of the roll stiffness of all springs."""
     return values["w_h"] / _roll_rate(values)
+
+
+def _interconnection(values: Values, part: float) -> Values:
+    """Return an interconnection of left and right whose rate is a part of that of the springs, and relaxes in a usual time."""
+    rates = {axle: part * values[f"k_s{axle}"] for axle in axles_of(values)}
+    return {
+        **{f"k_x{axle}": rate for axle, rate in rates.items()},
+        **{f"c_x{axle}": _USUAL_FLOW * rate for axle, rate in rates.items()},
+    }
 
 
 def _roll_rate(values: Values) -> float:
@@ -235,6 +250,24 @@ LINEAR_TERMS = (
             name: _ALMOST_NONE * value for name, value in usual_rubber(own).items() if name.startswith(("k_z", "c_z"))
         },
         first=lambda own, _: usual_rubber(own),
+    ),
+    ModelTerm(
+        INTERCONNECTION,
+        of_axles(lambda p, axle: p[f"k_x{axle}"] / p[f"k_s{axle}"]),
+        typical=0.5,
+        spread=2.5,
+        negligible=0.01,
+        description=TermDescription(
+            "{axle} wheels interconnected by {0} against roll, which relaxes in {1}",
+            (
+                (lambda p, axle: p[f"k_x{axle}"] / 1e3, "N/mm"),
+                (lambda p, axle: 1e3 * p[f"c_x{axle}"] / p[f"k_x{axle}"], "ms"),
+            ),
+            again="{axle} ones by {0}, which relaxes in {1}",
+        ),
+        undefined=lambda own, _: _interconnection(own, 1e-3),
+        first=lambda own, _: _interconnection(own, 0.5),
+        on_request=True,
     ),
     ModelTerm(
         TWIST,

@@ -68,6 +68,8 @@ class ModelTerm:
         Lowest and highest value that its character has.
     counterpart
         Term that takes its place where its character is none of its kind: both move alike.
+    on_request
+        Whether so few vehicles have it that it is in the model only where the campaign states it.
     """
 
     name: str
@@ -87,6 +89,7 @@ class ModelTerm:
     character: Callable[[Values], Sequence[float]] | None = None
     band: tuple[float, float] = (0.0, np.inf)
     counterpart: str = ""
+    on_request: bool = False
 
     @property
     def is_linear(self) -> bool:

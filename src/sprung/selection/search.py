@@ -23,7 +23,7 @@ from sprung.vehicle import PARAMETERS
 
 Real = NDArray[np.float64]
 
-_HYPOTHESES = len(TERMS) + 1
+_HYPOTHESES = sum(not term.on_request for term in TERMS.values()) + 1
 """Hypotheses that are tried on a campaign: every term, and the leakage of gravity."""
 
 
@@ -119,7 +119,9 @@ class ModelSearch:
         terms = [
             term
             for term in self.structure.open_terms
-            if term not in present and (not TERMS[term].refines or TERMS[term].refines in present)
+            if term not in present
+            and not TERMS[term].on_request
+            and (not TERMS[term].refines or TERMS[term].refines in present)
         ]
         return [term for term in (*tracks, *terms) if term in among]
 

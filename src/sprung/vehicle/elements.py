@@ -29,7 +29,7 @@ from sprung.vehicle.layout import (
 
 LINEAR_EXTRAS = (
     "anti-roll", "tyre-damping", "gravity", "asymmetry", "rigid-axle", "engine", "damper-mount",
-    "mount-damping", "zener",
+    "mount-damping", "zener", "interconnection",
     "twist", "bending", "occupants", "seat-load",
 )  # fmt: skip
 """Extras, by the name used in a campaign's ``[model]``, of the linear model."""
@@ -242,6 +242,10 @@ def _axle_elements(tracks: Tracks, extras: Collection[str], wheelbase: float, la
         axle = STATIONS[left].axle
         if "anti-roll" in extras:
             yield Element("spring", f"k_a{axle}", travel(left, "spring") - travel(right, "spring"))
+        if "interconnection" in extras:
+            flow = kinematics.behind_interconnection(axle)
+            yield Element("spring", f"k_x{axle}", travel(left, "spring") - travel(right, "spring") - flow)
+            yield Element("damper", f"c_x{axle}", flow)
         if "rigid-axle" in extras:
             yield Element("mass", f"m_x{axle}", kinematics.wheel(left) - kinematics.wheel(right), 0.5)
 

@@ -37,6 +37,9 @@ _WITH_MASS: Mapping[str, tuple[str, ...]] = {
 _WITHOUT_MASS: Mapping[str, str] = {"k_df": "x_d", "k_d": "x_d", "k_zf": "x_z", "k_z": "x_z"}
 """By parameter: the coordinates without mass, likewise, each without its wheel: travels of dampers on a spring."""
 
+_OF_AXLES: Mapping[str, str] = {"k_xf": "x_if", "k_xr": "x_ir", "k_x": "x_i"}
+"""By parameter: the coordinates without mass that an axle has, difference in travel of a damper between its wheels."""
+
 _BESIDE, _RISE_AT_SEATS = 0.37, 0.9
 """Half-distance of two people beside each other, m, and what the body under their seats rises as it bends, over the rise of its
 middle: 0.75 to 1 in the middle half of the wheelbase."""
@@ -124,7 +127,9 @@ def coordinates(names: Collection[str]) -> tuple[str, ...]:
     """
     suffixes = [STATIONS[wheel].suffix for wheel in layout_of(names).wheels]
     travels = [travel for name, travel in _WITHOUT_MASS.items() if name in names]
-    return (*massive_coordinates(names), *(f"{travel}{suffix}" for travel in travels for suffix in suffixes))
+    of_wheels = (f"{travel}{suffix}" for travel in travels for suffix in suffixes)
+    of_axles = (travel for name, travel in _OF_AXLES.items() if name in names)
+    return (*massive_coordinates(names), *of_wheels, *of_axles)
 
 
 def massive_coordinates(names: Collection[str]) -> tuple[str, ...]:
@@ -351,6 +356,11 @@ def behind_mount(station: Wheel) -> Row:
 def behind_branch(station: Wheel) -> Row:
     """Travel of the damper in the :term:`Zener branch` at one wheel."""
     return Row({f"x_z{STATIONS[station].suffix}": 1.0})
+
+
+def behind_interconnection(axle: str) -> Row:
+    """Difference in travel of what flows between the two sides of an axle, by the index of the axle."""
+    return Row({_OF_AXLES[f"k_x{axle}"]: 1.0})
 
 
 def travel(station: Wheel, half_distance: str, share: str | None = None, wheelbase: float = 0.0) -> Row:

@@ -42,6 +42,10 @@ _TABLE: Mapping[str, Parameter] = {
     "t*2": Parameter("m", "half-distance of the {} springs", False),
     "c_t*": Parameter("N s/m", "tyre damping, each {} wheel", True, False),
     "k_a*": Parameter("N/m", "{} anti-roll bar, per metre of left-right difference in travel", True, False),
+    "k_x*": Parameter(
+        "N/m", "{} rate between left and right that relaxes, per metre of left-right difference in travel", True, False
+    ),
+    "c_x*": Parameter("N s/m", "damping in series with the {} rate between left and right that relaxes", True),
     "w_h": Parameter(
         "N m", "weight of the body times the height of its centre of gravity above lateral support", True, False, True
     ),
@@ -152,6 +156,7 @@ _TERMS: Mapping[str, tuple[str, ...]] = {
     "damper-mount": ("k_d*",),
     "mount-damping": ("c_d*",),
     "zener": ("k_z*", "c_z*"),
+    "interconnection": ("k_x*", "c_x*"),
     "twist": ("I_w", "k_w", "c_w", "a_w"),
     "bending": ("m_v", "k_v", "c_v", "b_v", "p_v"),
     "occupants": ("m_o", "k_o", "c_o", "x_o", "y_o"),
@@ -174,7 +179,10 @@ _TERMS: Mapping[str, tuple[str, ...]] = {
 """Patterns of the parameters that each extra may add; see `parameters_of_term`."""
 
 _NEEDS: Mapping[str, Callable[[Layout], bool]] = {
-    **dict.fromkeys(("anti-roll", "asymmetry", "rigid-axle", "y_o", "I_xx", "t*", "t*1", "t*2"), lambda one: one.rolls),
+    **dict.fromkeys(
+        ("anti-roll", "interconnection", "asymmetry", "rigid-axle", "y_o", "I_xx", "t*", "t*1", "t*2"),
+        lambda one: one.rolls,
+    ),
     **dict.fromkeys(("bending", "x_e", "x_o", "I_yy", "a", "b"), lambda one: one.pitches),
     "gravity": lambda one: one.rolls or one.pitches,
     "twist": lambda one: one.rolls and one.pitches,
@@ -185,7 +193,7 @@ _WITHOUT_EFFECT: Mapping[str, float] = {
     **dict.fromkeys(("s*", "k_e", "k_w"), 1e6),
     **dict.fromkeys(("v_k*", "v_2*", "v_3*", "x_b*"), 1.0),
     **dict.fromkeys(("c_e", "x_e", "a_w", "b_v", "p_v", "c_o", "x_o", "y_o", "c_l"), 0.0),
-    **dict.fromkeys(("c_z*", "c_w"), 1e3),
+    **dict.fromkeys(("c_z*", "c_x*", "c_w"), 1e3),
     "k_v": 1e7,
     "c_v": 1e4,
     "k_o": 1e5,

@@ -101,6 +101,9 @@ class Vehicle:
     k_zf, k_zr, c_zf, c_zr
         :term:`Zener branch` beside each spring: a rate k_z, N/m, in series with a damping c_z, N s/m, so that k_s is the rate
         at rest, k_s + k_z that of fast motion and c_z / k_z the relaxation time.
+    k_xf, k_xr, c_xf, c_xr
+        Interconnection of left and right, hydraulic or by air: a rate k_x against a difference in travel, N/m, in series with a
+        damping c_x, N s/m, so that it resists roll and relaxes with c_x / k_x.
     I_w, k_w, c_w, a_w
         Twist of the body: modal inertia, kg m², stiffness, N m, and damping, N m s, for the angle between the axles, and its
         node, m ahead of the middle between them. An infinite inertia is that of a body that does not twist.
