@@ -11,6 +11,7 @@ from sprung.errors import Fault
 from sprung.preprocess.alignment import active_channels, align_loggers
 from sprung.preprocess.clipping import check_full_scale, detect_clipping
 from sprung.preprocess.decay import FreeDecay
+from sprung.preprocess.decimation import decimate
 from sprung.preprocess.drift import remove_drift
 from sprung.preprocess.dropped_wheels import (
     Dropped,
@@ -27,6 +28,7 @@ from sprung.preprocess.high_pass import undo_high_pass
 from sprung.preprocess.pads import exclude_still_pads, extract_forced_response, is_on_pads
 from sprung.preprocess.release import detect_release, unknown_release
 from sprung.preprocess.spikes import remove_spikes
+from sprung.preprocess.splice import join_splices
 from sprung.progress import Progress, Step, counted, silent
 
 
@@ -63,7 +65,8 @@ def prepare(campaign: Campaign, progress: Progress = silent) -> Prepared:
     Prepared
     """
     stage = "looking for spikes in the recordings"
-    despiked = [remove_spikes(recording) for recording in counted(progress, stage, campaign.recordings)]
+    whole = [decimate(recording) for recording in join_splices(campaign.recordings)]
+    despiked = [remove_spikes(recording) for recording in counted(progress, stage, tuple(whole))]
     recordings = exclude_copies([align_loggers(recording) for recording, _ in despiked], campaign.drops)
     recordings = [
         exclude_still_pads(recording, drop, campaign.sensors)
