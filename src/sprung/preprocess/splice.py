@@ -38,6 +38,9 @@ _SIDE, _DEGREE = 0.03, 4
 _FILLED, _DEGREE_FILLED = 0.012, 5
 """s on each side of the joint through which the polynomial is put that fills it in, and its degree."""
 
+_SMEARED = 5
+"""Samples on each side of a splice that interpolation to one clock may have smeared."""
+
 _SURE = 5.0
 """Standard errors by which a delay has to differ from zero."""
 
@@ -143,10 +146,11 @@ def _estimate_delay(spliced: Sequence[tuple[Recording, int]]) -> Delay:
 def _jump(recording: Recording, at: int) -> tuple[Real, Real]:
     """Return the rate of each channel at a splice, and how far it jumps there, both over the channel's range."""
     values = recording.values[recording.usable]
-    count = min(max(round(_SIDE * recording.rate), 2 * _DEGREE), at, values.shape[1] - at)
-    time = np.arange(-count, count) / recording.rate
-    first = np.polynomial.polynomial.polyfit(time[:count], values[:, at - count : at].T, _DEGREE)
-    second = np.polynomial.polynomial.polyfit(time[count:], values[:, at : at + count].T, _DEGREE)
+    count = min(max(round(_SIDE * recording.rate), 2 * _DEGREE), at - _SMEARED, values.shape[1] - at - _SMEARED)
+    time = np.arange(_SMEARED, count + _SMEARED) / recording.rate
+    before, after = slice(at - _SMEARED - count, at - _SMEARED), slice(at + _SMEARED, at + _SMEARED + count)
+    first = np.polynomial.polynomial.polyfit(-time[::-1] - 1 / recording.rate, values[:, before].T, _DEGREE)
+    second = np.polynomial.polynomial.polyfit(time, values[:, after].T, _DEGREE)
     span = np.ptp(values, axis=1)
     return (first[1] + second[1]) / 2 / span, (second[0] - first[0]) / span
 
@@ -156,16 +160,18 @@ def _joined(recording: Recording, at: int, delay: Delay) -> Recording:
     moment = recording.start + at / recording.rate
     what = f"until {moment:.3f} s all channels passed another filter than after it"
     samples = round(delay.value * recording.rate)
-    if not (abs(delay.value) > _SURE * delay.std and 0 < samples < _LATEST * recording.rate and samples < at):
+    if not (
+        abs(delay.value) > _SURE * delay.std and 0 < samples < _LATEST * recording.rate and samples + 2 * _SMEARED < at
+    ):
         do = "Record with one filter throughout, or use the part after it: give start = ... for this drop."
         fault = Fault("splice", recording.name, f"{what}; nothing was changed", do)
         return replace(recording, faults=(*recording.faults, fault))
     values = recording.values.copy()
     values[:, : at - samples] = recording.values[:, samples:at]
     side = max(round(_FILLED * recording.rate), 2 * _DEGREE_FILLED)
-    known = np.concatenate([np.arange(max(at - samples - side, 0), at - samples), np.arange(at, at + side)])
+    gap = np.arange(at - samples - _SMEARED, at + _SMEARED)
+    known = np.concatenate([np.arange(max(gap[0] - side, 0), gap[0]), np.arange(gap[-1] + 1, gap[-1] + 1 + side)])
     known = known[known < values.shape[1]]
-    gap = np.arange(at - samples, at)
     usable = recording.usable
     through = np.polynomial.polynomial.polyfit((known - at) / side, values[usable][:, known].T, _DEGREE_FILLED)
     values[np.ix_(usable, gap)] = np.polynomial.polynomial.polyval((gap - at) / side, through)
