@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import zlib
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 from typing import NamedTuple
 
@@ -18,10 +18,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 import sprung
+from sprung.campaign import Excitation
 from sprung.planning import CramerRaoBound, MeasurementSetup, PlannedDrop, PlannedTest
-from sprung.simulation import USUAL_NOISE, default_sensors
+from sprung.simulation import USUAL_NOISE, Acting, Push, default_drops, default_sensors
 from sprung.uncertainty import NORMAL_95, KnownValue
-from sprung.vehicle import PARAMETERS, Item, Load, Sensor, Vehicle, evaluate_quantity, parameter_name, parameter_of
+from sprung.vehicle import (
+    EMPTY,
+    PARAMETERS,
+    STATIONS,
+    Item,
+    Load,
+    Sensor,
+    Vehicle,
+    Wheel,
+    evaluate_quantity,
+    parameter_name,
+    parameter_of,
+)
 
 Real = NDArray[np.float64]
 
@@ -69,10 +82,48 @@ Sensors = tuple[Sensor, ...] | None
 """The sensors of a test; None for an accelerometer at each corner and on each wheel."""
 
 
+@dataclass(frozen=True)
+class Done:
+    """What is done with a vehicle.
+
+    Attributes
+    ----------
+    excitations
+        Each on all, front, rear, left and right wheels, as far as these can be.
+    push
+        How it is pushed.
+    """
+
+    excitations: tuple[Excitation, ...] = ("drop",)
+    push: Push = field(default_factory=Push)
+
+
 @lru_cache(maxsize=32)
-def _without_noise(vehicle: Vehicle, loaded: bool, sensors: Sensors) -> sprung.Campaign:
+def _without_noise(vehicle: Vehicle, loaded: bool, sensors: Sensors, done: Done) -> sprung.Campaign:
     loads = [ballast(vehicle)] if loaded else []
-    return sprung.simulate(vehicle, sensors=sensors, loads=loads, rate=RATE, noise=0.0, duration=DURATION, rest=REST)
+    drops = [
+        replace(drop, excitation=excitation)
+        for drop in default_drops((EMPTY, *loads), vehicle.layout)
+        for excitation in done.excitations
+        if excitation != "pass" or goes_over_a_bump(drop.wheels, vehicle)
+    ]
+    return sprung.simulate(
+        vehicle,
+        sensors=sensors,
+        loads=loads,
+        drops=drops,
+        push=done.push,
+        rate=RATE,
+        noise=0.0,
+        duration=DURATION,
+        rest=REST,
+    )
+
+
+def goes_over_a_bump(wheels: Sequence[Wheel], vehicle: Vehicle) -> bool:
+    """Whether wheels can run over a bump without others of their side: what the front does the rear does after it."""
+    axles = vehicle.layout.axles
+    return all(sum(STATIONS[wheel].axle == axle for wheel in wheels) == len(wheels) / len(axles) for axle in axles)
 
 
 def _levels(vehicle: Vehicle, sensors: Sensors, noise: float) -> Real:
@@ -99,6 +150,8 @@ class Case:
         What sensors make of a record.
     sensors
         Of the test.
+    done
+        What is done with it, if not dropped.
     """
 
     vehicle: Vehicle
@@ -107,6 +160,7 @@ class Case:
     noise: float
     measure: Measure = white
     sensors: Sensors = None
+    done: Done = field(default_factory=Done)
 
     @property
     def test(self) -> str:
@@ -121,12 +175,13 @@ class Case:
     def label(self) -> str:
         """All of it in words."""
         channels = "".join(f", {sensor.channel}" for sensor in self.sensors or ())
-        return f"{self.vehicle.name}, {self.test}, {self.noise:g} m/s², {self.measure.__name__}{channels}"
+        done = "" if self.done == Done() else f", {' '.join(self.done.excitations)} {self.done.push.shape}"
+        return f"{self.vehicle.name}, {self.test}, {self.noise:g} m/s², {self.measure.__name__}{channels}{done}"
 
     @property
     def drops(self) -> int:
         """How many drops there are."""
-        return len(_without_noise(self.vehicle, self.loaded, self.sensors).drops)
+        return len(_without_noise(self.vehicle, self.loaded, self.sensors, self.done).drops)
 
     @property
     def scaled(self) -> bool:
@@ -150,7 +205,7 @@ class Case:
 
     def campaign(self, number: int) -> sprung.Campaign:
         """Return one noisy campaign."""
-        clean, seed = _without_noise(self.vehicle, self.loaded, self.sensors), self.seed(number)
+        clean, seed = _without_noise(self.vehicle, self.loaded, self.sensors, self.done), self.seed(number)
         random, levels = np.random.default_rng(seed), _levels(self.vehicle, self.sensors, self.noise)[:, None]
         recordings = tuple(replace(one, values=self.measure(one.values, levels, random)) for one in clean.recordings)
         return replace(clean.with_recordings(recordings), known=self.known(np.random.default_rng([seed, 1])))
@@ -235,19 +290,20 @@ class Trial(NamedTuple):
 
 
 def _measurement_setup(case: Case, known: Mapping[str, KnownValue]) -> MeasurementSetup:
-    vehicle, sensors = case.vehicle, _without_noise(case.vehicle, False, case.sensors).sensors
+    vehicle, sensors = case.vehicle, _without_noise(case.vehicle, False, case.sensors, Done()).sensors
     tape = {"wheelbase": KnownValue(vehicle.wheelbase)} if vehicle.layout.pitches else {}
     everything = {**tape, **known}
     levels = _levels(vehicle, case.sensors, case.noise)
-    return MeasurementSetup(vehicle, vehicle.tracks, (), everything, sensors, levels, RATE, DURATION)
+    acting = Acting(case.done.push)
+    return MeasurementSetup(vehicle, vehicle.tracks, (), everything, sensors, levels, RATE, DURATION, acting=acting)
 
 
 @lru_cache(maxsize=256)
 def _information(case: Case, used: tuple[int, ...]) -> Real:
     """Return the information of drops, without weighings; shape (direction, direction)."""
-    clean = _without_noise(case.vehicle, case.loaded, case.sensors)
+    clean = _without_noise(case.vehicle, case.loaded, case.sensors, case.done)
     drops = (clean.drops[i] for i in used)
-    planned = tuple(PlannedDrop(clean.load(one.load), one.wheels, float(one.height or 0)) for one in drops)
+    planned = tuple(PlannedDrop.of(one, clean.load(one.load)) for one in drops)
     return PlannedTest(_measurement_setup(case, {}), planned).information
 
 

@@ -310,7 +310,7 @@ def test_settled_means_that_no_tyre_force_reaches_zero_again() -> None:
 
 
 def test_a_drop_without_end_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("sprung.simulation.linear_drop._MOST_SEGMENTS", 20)
+    monkeypatch.setattr("sprung.simulation.contact_motion._MOST_SEGMENTS", 20)
     with pytest.raises(SprungError, match="is the vehicle damped"):
         drop_from_blocks(with_changes(TABLE_1_CAR, c_sf=0.0, c_sr=0.0), height=0.1)
 

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sprung.analysis.analysis import Analysis
-from sprung.campaign import DEFAULT_HEIGHT
 from sprung.vehicle import LOAD_MASS, is_of_sensor, parameter_names
 
 if TYPE_CHECKING:
@@ -52,7 +51,7 @@ def to_design(run: Analysis) -> PlannedTest:
     )
     used = {decay.file for decay in decays}
     dropped = [
-        PlannedDrop(campaign.load(seen.drop.load), seen.wheels, seen.drop.height or DEFAULT_HEIGHT)
+        PlannedDrop.of(seen.drop, campaign.load(seen.drop.load), seen.wheels)
         for seen in run.prepared.observations
         if seen.recording.name in used
     ]

@@ -35,19 +35,34 @@ DEFAULT_HEIGHT = 0.05
 """Height of the blocks where a drop does not say, m."""
 
 
-def drop_kind(wheels: Sequence[Wheel]) -> str:
+Excitation = Literal["drop", "push", "pass", "pads"]
+"""Released from blocks; pushed or pulled and let go; driven over an unknown bump onto flat road; or driven by pads."""
+
+
+def drop_kind(wheels: Sequence[Wheel], excitation: Excitation = "drop") -> str:
     """Return the name of a drop by its wheels, such as ``pitch front``; the wheels themselves where it has none.
 
     Parameters
     ----------
     wheels
-        Those that fall.
+        Those that fall; of a push those between which the body is pushed, of a pass those that run over the bump.
+    excitation
+        What excites the vehicle.
 
     Returns
     -------
     str
+
+    Examples
+    --------
+    >>> drop_kind(("fl", "fr")), drop_kind(("fl", "fr"), "push"), drop_kind(("fl", "fr", "rl", "rr"), "pass")
+    ('pitch front', 'push front', 'pass')
     """
-    return DROP_KINDS.get(frozenset(wheels), " ".join(wheels))
+    kind = DROP_KINDS.get(frozenset(wheels), " ".join(wheels))
+    if excitation == "drop":
+        return kind
+    motion, _, where = kind.partition(" ")
+    return excitation if kind == "bounce" else f"{excitation} {where if motion in {'pitch', 'roll'} else kind}"
 
 
 @checked_record
@@ -67,8 +82,8 @@ class Drop:
     load: str = "empty"
     """Name of the load on the vehicle."""
     wheels: Annotated[tuple[Wheel, ...], Field(json_schema_extra={"minItems": 1})] = ("fl", "fr", "rl", "rr")
-    """Which wheels were dropped, of a part of a vehicle all unless given; the others stood on the ground."""
-    excitation: Literal["drop", "push", "pass", "pads"] = "drop"
+    """Which wheels were dropped, between which the body was pushed, or which ran over the bump; all others stood."""
+    excitation: Excitation = "drop"
     """Released from blocks; pushed or pulled and let go; driven over an unknown bump onto flat road; or driven by pads."""
     speed: Positive | None = None
     """Speed of a pass over a bump, m/s, where it is known."""
@@ -152,7 +167,12 @@ class Drop:
     @property
     def kind(self) -> str:
         """What kind of drop it is, by the wheels that were dropped: ``pitch front``; or just the wheels."""
-        return drop_kind(self.wheels)
+        return drop_kind(self.wheels, self.excitation)
+
+    @property
+    def is_driven(self) -> bool:
+        """Whether the vehicle was driven until it vibrated freely, by a push or over a bump: no wheel fell."""
+        return self.excitation in {"push", "pass"}
 
     def with_recording(self, recording: Recording) -> DropTest:
         """Return the drop as it was recorded.

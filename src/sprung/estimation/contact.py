@@ -2,7 +2,8 @@
 
 Before a fit, the accelerometers say roughly when the last tyre has come down for good. A fitted vehicle says it exactly:
 carried backward and forward from its state at the start of a decay, it shows how far each tyre is compressed, and free
-vibration begins where the last one last touched. The samples between have the largest wheel hop, and most information.
+vibration begins where the last one last touched. The samples between have the largest wheel hop, and most information. After a
+push or a bump it begins where the fitted vehicle moves freely.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.estimation.fit_result import FitResult
+from sprung.estimation.free_start import find_free_start
 from sprung.preprocess import FreeDecay
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import LinearModel, layout_of
@@ -110,7 +112,9 @@ def _shifted(decays: Sequence[FreeDecay], shifts: Sequence[int]) -> tuple[FreeDe
 
 
 def _is_as_good(refitted: FitResult, fit: FitResult) -> bool:
-    return bool(np.all(refitted.noise <= _NO_WORSE * fit.noise))
+    # Without noise rounding grows with the records.
+    rounding = np.sqrt(refitted.problem.least_variance)
+    return bool(np.all(refitted.noise <= _NO_WORSE * np.maximum(fit.noise, rounding)))
 
 
 def _explained(decays: Sequence[FreeDecay], shifts: Sequence[int], fit: FitResult) -> list[int]:
@@ -134,6 +138,9 @@ def _shifts(decays: Sequence[FreeDecay], models: Mapping[str, LinearModel], fit:
     for drop, decay in enumerate(decays):
         if decay.pads:
             shifts.append(0)
+            continue
+        if decay.is_driven:
+            shifts.append(find_free_start(fit, drop) if fit.is_reversible else _landing(decay, fit, drop))
             continue
         static = compressions[decay.load][:, None]
         earlier, samples = decay.earlier.shape[1] if fit.is_reversible else 0, decay.samples

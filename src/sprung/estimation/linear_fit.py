@@ -52,6 +52,9 @@ STARTS = 3
 _WHITE = 0.15
 """Correlation of neighbouring residuals up to which nothing but noise is left; a motion makes it nearly one."""
 
+_DETERMINED = 1e3
+"""Information of a logarithm from which the first optimum along a direction is the only one: three percent of uncertainty."""
+
 _IS_SCALE = 0.999
 """Cosine of the angle to the direction of the absolute scale from which a direction is that."""
 
@@ -194,10 +197,13 @@ def _best(problem: EstimationProblem, ends: Sequence[Maximum[Iterate]], enough: 
 
 
 def _is_determined(fit: FitResult) -> bool:
-    """Whether records and statements determine everything but the scale: at a wrong optimum a part of a vehicle vanishes."""
+    """Whether records and statements determine everything but the scale: at a wrong optimum a part of a vehicle vanishes.
+
+    Where they hardly determine a direction, there may be several optima along it.
+    """
     information, _, null_space = fit.problem.system(fit.iterate)
     eigenvalues, vectors = np.linalg.eigh(information)
-    missing = null_space @ vectors[:, eigenvalues < least_information(eigenvalues)]
+    missing = null_space @ vectors[:, eigenvalues < max(_DETERMINED, least_information(eigenvalues))]
     # Every mass and rate times a number is one vehicle where nothing was weighed.
     slopes = fit.problem.priors.coordinates.derivatives(fit.iterate.u)
     of_scale = scaling_direction(fit.names, fit.values, slopes)

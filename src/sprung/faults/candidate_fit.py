@@ -232,5 +232,9 @@ def decays_without_wheel_sensors(campaign: Campaign, decays: Sequence[FreeDecay]
     moved = []
     for decay in decays:
         shift = round((starts.get(decay.file, decay.start) - decay.start) * decay.rate)
-        moved.append(decay.shifted(max(shift, -decay.earlier.shape[1])) if shift < decay.samples / 2 else decay)
+        moved.append(
+            decay.shifted(max(shift, -decay.earlier.shape[1]))
+            if shift < decay.samples / 2 and not decay.is_driven
+            else decay
+        )
     return tuple(moved)

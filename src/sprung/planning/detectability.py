@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from sprung.display import shown
 from sprung.planning.setup import MeasurementSetup, PlannedDrop
-from sprung.simulation import BlockSupport, drop_from_blocks, simulate_nonlinear_drops
+from sprung.simulation import simulate_nonlinear_drops
 from sprung.vehicle import NEUTRAL, PARAMETERS, Motion, Readout, Vehicle, nonlinear_elements
 
 Real = NDArray[np.float64]
@@ -169,12 +169,14 @@ def _readings(
 
 def _motions(setup: MeasurementSetup, vehicle: Vehicle, drops: Sequence[PlannedDrop]) -> list[Motion]:
     """Return the motion of each drop from the release on."""
-    samples = int(setup.duration * setup.rate)
+    samples = [sum(setup.decay_window(drop)) for drop in drops]
     if nonlinear_elements(vehicle.tracks, vehicle.extras):
-        blocks = [BlockSupport(drop.load, drop.wheels, drop.height) for drop in drops]
-        return simulate_nonlinear_drops(vehicle, blocks, 1 / setup.rate, samples)
-    falls = (drop_from_blocks(vehicle, *drop, duration=setup.duration + 1 / setup.rate) for drop in drops)
-    return [fall.motion(1 / setup.rate, samples) for fall in falls]
+        starts = [setup.acting.beginning(vehicle, drop.load, drop) for drop in drops]
+        whole = simulate_nonlinear_drops(vehicle, starts, 1 / setup.rate, max(samples))
+        return [Motion(*(part[:, :own] for part in motion)) for motion, own in zip(whole, samples, strict=True)]
+    duration = setup.duration + 1 / setup.rate
+    exact = (setup.acting.motion(vehicle, drop.load, drop, duration) for drop in drops)
+    return [motion.motion(1 / setup.rate, own) for motion, own in zip(exact, samples, strict=True)]
 
 
 def _unimitated(

@@ -16,11 +16,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.campaign import DEFAULT_HEIGHT, Drop, Excitation
 from sprung.display import shown
 from sprung.errors import InputError, Problem
 from sprung.estimation import ClosedFormObjective, Coordinates, PriorsAndConstraints
 from sprung.preprocess import FreeDecay, unknown_release
-from sprung.simulation import DropMotion, drop_from_blocks
+from sprung.simulation import Acting, DropMotion
 from sprung.uncertainty import KnownValue
 from sprung.vehicle import (
     LinearModel,
@@ -45,21 +46,32 @@ _SHORTEST = 0.5
 
 
 class PlannedDrop(NamedTuple):
-    """One planned release off the blocks.
+    """One planned release off the blocks, push or pass over a bump.
 
     Attributes
     ----------
     load
         Load on the vehicle.
     wheels
-        With blocks under them.
+        With blocks under them; of a push those between which the body is pushed, of a pass those that run over the bump.
     height
         Of the blocks, m.
+    excitation
+        What excites the vehicle.
+    speed
+        Of a pass, m/s; None for a usual one.
     """
 
     load: Load
     wheels: tuple[Wheel, ...]
-    height: float
+    height: float = DEFAULT_HEIGHT
+    excitation: Excitation = "drop"
+    speed: float | None = None
+
+    @classmethod
+    def of(cls, drop: Drop, load: Load, wheels: tuple[Wheel, ...] | None = None) -> PlannedDrop:
+        """Return a drop of a campaign with its load, and its wheels where others fell than it states."""
+        return cls(load, wheels or drop.wheels, drop.height or DEFAULT_HEIGHT, drop.excitation, drop.speed)
 
 
 @shown
@@ -82,11 +94,13 @@ class MeasurementSetup:
     rate
         Samples per second.
     duration
-        Of the recording after the release, s.
+        Of the recording after the release, or after nothing drives the vehicle any more, s.
     inflation
         Factor by which coloured residuals increase the variance of the estimates.
     delay
         Of the first sample that is used, after the last lift-off, s.
+    acting
+        How the body is pushed, and what is driven over.
     """
 
     vehicle: Vehicle
@@ -99,6 +113,7 @@ class MeasurementSetup:
     duration: float = 3.2
     inflation: float = 1.0
     delay: float = 0.0
+    acting: Acting = field(default_factory=Acting)
 
     def __post_init__(self) -> None:
         invalid = [
@@ -280,18 +295,18 @@ class MeasurementSetup:
 
     def decay_window(self, drop: PlannedDrop) -> tuple[int, int]:
         """Return the first sample of a drop's decay, counted from the release, and the number of samples."""
-        return self._window(self._fall(drop), self.rate)
+        return self._window(self._motion(drop), self.rate)
 
-    def _fall(self, drop: PlannedDrop) -> DropMotion:
-        return drop_from_blocks(self.vehicle, *drop, duration=self.duration)
+    def _motion(self, drop: PlannedDrop) -> DropMotion:
+        return self.acting.motion(self.vehicle, drop.load, drop, self.duration)
 
-    def _window(self, fall: DropMotion, rate: float) -> tuple[int, int]:
-        first = math.ceil((fall.decay_start + self.delay) * rate)
-        return first, int(self.duration * rate) - first
+    def _window(self, motion: DropMotion, rate: float) -> tuple[int, int]:
+        first = math.ceil((motion.decay_start + self.delay) * rate)
+        return first, int((motion.driven_until + self.duration) * rate) - first
 
     def _decay(self, drop: PlannedDrop, load: str, rate: float) -> FreeDecay:
-        fall = self._fall(drop)
-        first, samples = self._window(fall, rate)
+        motion = self._motion(drop)
+        first, samples = self._window(motion, rate)
         if samples < _SHORTEST * rate:
             found = f"{max(samples / rate, 0.0):.2f} s of free vibration within {self.duration:.1f} s of the release"
             where = f"drop of {self.vehicle.name}, load '{drop.load.name}'"
@@ -302,7 +317,7 @@ class MeasurementSetup:
             name=load,
             file=load,
             load=load,
-            values=readout.read(list(parameters.values()), fall.motion(1 / rate, samples, first / rate)),
+            values=readout.read(list(parameters.values()), motion.motion(1 / rate, samples, first / rate)),
             earlier=np.zeros((channels, 0)),
             rate=rate,
             start=first / rate,

@@ -15,8 +15,8 @@ from sprung.preprocess.events import Events
 from sprung.preprocess.release import Release, resolution
 from sprung.vehicle import Wheel
 
-FITTED = "in the fitted vehicle every tyre is down for good"
-"""Why a fit uses a decay from elsewhere than the recording alone shows."""
+FITTED, FREE = "in the fitted vehicle every tyre is down for good", "the fitted vehicle moves freely"
+"""Why a fit uses a decay from elsewhere than the recording alone shows; after a push or a bump."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,6 +90,8 @@ class FreeDecay:
         Log-likelihood of the flight before it; None where that is not used.
     pads
         Wheel stations whose pads drove the vehicle all along, so that it is no free decay but a forced response.
+    is_driven
+        Whether a push or a bump drove the vehicle before it, so that only a fit shows which samples are free vibration.
     """
 
     name: str
@@ -108,6 +110,7 @@ class FreeDecay:
     events: Events = field(default_factory=Events)
     flight: FlightLikelihood | None = None
     pads: tuple[Wheel, ...] = ()
+    is_driven: bool = False
 
     @cached_property
     def usable(self) -> NDArray[np.bool_]:
@@ -137,7 +140,7 @@ class FreeDecay:
         whole = np.concatenate([self.earlier, self.values], axis=1)
         first = self.earlier.shape[1] + samples
         start = self.start + samples / self.rate
-        events = replace(self.events, why_fit=FITTED) if samples else self.events
+        events = replace(self.events, why_fit=FREE if self.is_driven else FITTED) if samples else self.events
         return replace(self, values=whole[:, first:], earlier=whole[:, :first], start=start, events=events)
 
     @property

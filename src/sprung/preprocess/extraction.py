@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from sprung.campaign import Campaign, DropTest, Recording
 from sprung.errors import Fault
 from sprung.preprocess.decay import FreeDecay
+from sprung.preprocess.end_of_drive import detect_end_of_drive
 from sprung.preprocess.events import Events
 from sprung.preprocess.high_pass import integrate_from_rest
 from sprung.preprocess.landing import Landing, detect_landing, measure_suspension_force
@@ -66,7 +67,7 @@ def pool_suspension_forces(campaign: Campaign, releases: Sequence[Release | None
     """
     measured: defaultdict[Wheel, list[float]] = defaultdict(list)
     for drop, release in zip(campaign.drops, releases, strict=True):
-        if release is not None:
+        if release is not None and not drop.is_driven:
             recording = drop.recording
             forces = measure_suspension_force(recording.values, recording.rate, release, campaign.sensors, drop.wheels)
             for wheel, force in forces.items():
@@ -120,7 +121,8 @@ def extract_decay(
             Fault("missing", recording.name, missing, "Record the drop again."),
         )
     faults = list(recording.faults)
-    if drop.start is None and release is None:
+    is_driven = drop.is_driven and drop.start is None
+    if drop.start is None and release is None and not is_driven:
         what = "no rest before the motion; the recording is used from its first sample on"
         do = "Give start = ... for this drop, or let the recording begin before the release."
         faults.append(Fault("no-release", recording.name, what, do))
@@ -149,6 +151,7 @@ def extract_decay(
         high_pass=high_pass,
         initial_velocity=integrate_from_rest(values, recording.rate, release, high_pass, landing.possible),
         events=_events(recording, release, landing, why_end),
+        is_driven=is_driven,
     )
 
 
@@ -160,6 +163,8 @@ def _find_start(
     if drop.start is not None:
         given = find_stated_start(drop)
         return Landing(given, given, "given as start")
+    if drop.is_driven:
+        return detect_end_of_drive(recording.values, recording.rate, release, clipped)
     if release is None:
         return Landing(0, 0, "no release was found, so the first sample")
     fall = np.sqrt(2 * (drop.height or _HIGHEST_BLOCKS) / STANDARD_GRAVITY)

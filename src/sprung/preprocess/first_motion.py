@@ -81,10 +81,10 @@ def begins_upward(campaign: Campaign, prepared: Prepared) -> bool:
 
 
 def _gained(prepared: Prepared, channels: int, span: float) -> Real:
-    """Velocity that each channel gains in some time after the release, m/s, shape (drop, channel)."""
+    """Velocity that each channel gains in some time after the release, m/s, shape (drop, channel); NaN where no wheel fell."""
     gained = np.full((len(prepared.observations), channels), np.nan)
     for drop, seen in enumerate(prepared.observations):
-        if seen.release is not None:
+        if seen.release is not None and not seen.drop.is_driven:
             count = max(round(span * seen.recording.rate), 2)
             first = seen.recording.values[:, seen.release : seen.release + count]
             gained[drop] = (first - seen.rest.level[:, None]).sum(axis=1) / seen.recording.rate
@@ -134,8 +134,9 @@ def is_first_motion_consistent(
     velocities = gained[there]
     if velocities.size == 0:
         return None
-    ends_differ = bool(np.linalg.matrix_rank(counts) == 2)
-    sides_differ = bool(sides.any())
+    shown = there.any(axis=1)
+    ends_differ = bool(np.linalg.matrix_rank(counts[shown]) == 2)
+    sides_differ = bool(sides[shown].any())
     if not ends_differ and not sides_differ:
         return None
     columns = [np.broadcast_to(counts[:, [i]], there.shape) for i in range(2)]

@@ -40,7 +40,7 @@ def find_flights(decays: Sequence[FreeDecay], observations: Sequence[DropObserva
 
 def _flight(decay: FreeDecay, observation: DropObservation) -> FreeDecay | None:
     drop, recording, release = observation.drop, observation.recording, observation.release
-    if release is None or drop.start is not None or decay.clocks or recording.rate != decay.rate:
+    if release is None or drop.is_driven or drop.start is not None or decay.clocks or recording.rate != decay.rate:
         return None
     first = release + math.ceil(_CLEAR * decay.rate)
     begin = round((decay.start - recording.start) * decay.rate)

@@ -78,7 +78,9 @@ def prepare(campaign: Campaign, progress: Progress = silent) -> Prepared:
     releases = [
         None
         if is_on_pads(drop)
-        else detect_release(recording.values, recording.rate, active=active_channels(recording))
+        else detect_release(
+            recording.values, recording.rate, active=active_channels(recording), is_driven=drop.is_driven
+        )
         for drop, recording in zip(campaign.drops, recordings, strict=True)
     ]
     recordings, releases, sensors = check_gravity(recordings, releases, campaign.sensors)
@@ -90,9 +92,9 @@ def prepare(campaign: Campaign, progress: Progress = silent) -> Prepared:
             counted(progress, "removing drift from the recordings", recordings), releases, strict=True
         )
     ]
-    dropped = [
-        detect_dropped_wheels(recording, release, sensors)
-        for recording, release in zip(recordings, releases, strict=True)
+    dropped: list[Dropped] = [
+        {} if drop.is_driven else detect_dropped_wheels(recording, release, sensors)
+        for drop, recording, release in zip(campaign.drops, recordings, releases, strict=True)
     ]
     drops = [replace(drop, recording=own) for drop, own in zip(campaign.drops, recordings, strict=True)]
     drops = _correct_dropped_wheels(drops, dropped)

@@ -28,6 +28,9 @@ _FILLED_IN = 0.01
 _REST = 0.3
 """s before the release from which rest level and noise are estimated."""
 
+_SLOW = 0.1
+"""s before the first motion that shows in which a push may have begun."""
+
 _FEWEST = 4
 """Samples of a rest at the least."""
 
@@ -70,9 +73,13 @@ def unknown_release(channels: int) -> Release:
 
 
 def detect_release(
-    values: Real, rate: float, peak_over_noise: float = PEAK_OVER_NOISE, active: Flags | None = None
+    values: Real,
+    rate: float,
+    peak_over_noise: float = PEAK_OVER_NOISE,
+    active: Flags | None = None,
+    is_driven: bool = False,
 ) -> Release | None:
-    """Detect the release.
+    """Detect the release, or the first motion of a vehicle that is pushed or reaches a bump.
 
     Parameters
     ----------
@@ -84,6 +91,8 @@ def detect_release(
         Peak over the standard deviation of the first samples in the clearest channel, below which there is no release.
     active
         Channels that show the moment of the release, shape (channel,); all of them by default.
+    is_driven
+        Whether the vehicle was driven until it vibrated freely: the first motion counts, which may begin slowly.
 
     Returns
     -------
@@ -99,8 +108,8 @@ def detect_release(
     if not usable.any():
         return None
     if usable.all():
-        return _detect(values, rate, peak_over_noise, active)
-    found = _detect(values[usable], rate, peak_over_noise, None if active is None else active[usable])
+        return _detect(values, rate, peak_over_noise, active, is_driven)
+    found = _detect(values[usable], rate, peak_over_noise, None if active is None else active[usable], is_driven)
     if found is None:
         return None
     level, step = np.full((2, len(values)), np.nan)
@@ -109,7 +118,7 @@ def detect_release(
     return Release(found.sample, level, noise, step)
 
 
-def _detect(values: Real, rate: float, peak_over_noise: float, active: Flags | None) -> Release | None:
+def _detect(values: Real, rate: float, peak_over_noise: float, active: Flags | None, is_driven: bool) -> Release | None:
     width = max(round(_QUIET * rate), 3)
     if values.shape[1] < 4 * width:
         return None
@@ -135,10 +144,11 @@ def _detect(values: Real, rate: float, peak_over_noise: float, active: Flags | N
     moving = (deviation[watched, :landing] > np.maximum(8 * spread, _SMALL * peak)[watched]).any(axis=0)
     events = np.concatenate([[-1], np.flatnonzero(moving), [landing]])
     quiet = np.flatnonzero(np.diff(events) > width)
-    if quiet.size == 0:
+    if quiet.size == 0 or (is_driven and quiet[0] > 0):
         return None
-    sample = int(events[quiet[-1] + 1])
-    rest = values[:, max(0, sample - int(_REST * rate)) : sample - 1]
+    sample = int(events[1 if is_driven else quiet[-1] + 1])
+    rested = sample - (int(_SLOW * rate) if is_driven else 1)
+    rest = values[:, max(0, rested + 1 - int(_REST * rate)) : max(rested, 0)]
     if rest.shape[1] < _FEWEST:
         return None
     # A vehicle on blocks may still creep a little: a straight line is taken off before the noise is read.

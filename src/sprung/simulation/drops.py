@@ -1,4 +1,4 @@
-"""Drops from blocks, as they would have been recorded."""
+"""Drops from blocks, pushes and passes over a bump, as they would have been recorded."""
 
 from __future__ import annotations
 
@@ -13,13 +13,14 @@ import numpy as np
 from sprung.campaign import DEFAULT_HEIGHT, Campaign, Drop, KnownValueLike, ModelChoice, read_vehicle
 from sprung.errors import Problems
 from sprung.progress import Progress, Step, counted, silent
-from sprung.simulation.arguments import has_pads
-from sprung.simulation.linear_drop import drop_from_blocks
-from sprung.simulation.nonlinear_motion import BlockSupport, simulate_nonlinear_drops
+from sprung.simulation.acting import Acting
+from sprung.simulation.arguments import has_pads, record
+from sprung.simulation.excitation import Bump, Push
+from sprung.simulation.nonlinear_motion import simulate_nonlinear_drops
 from sprung.simulation.pads import PadMotion, drive_on_pads
 from sprung.simulation.setup import SimulationSetup, check_not_negative
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import Load, Sensor, Vehicle, after_rest, nonlinear_elements
+from sprung.vehicle import Load, Motion, Sensor, Vehicle, after_rest, nonlinear_elements
 
 
 def simulate(
@@ -38,13 +39,16 @@ def simulate(
     model: ModelChoice | Mapping[str, Any] | None = None,
     gravity: float = STANDARD_GRAVITY,
     sensor_errors: bool = False,
+    push: Push | Mapping[str, Any] | None = None,
+    bump: Bump | Mapping[str, Any] | None = None,
     pads: PadMotion | None = None,
     progress: Progress = silent,
 ) -> Campaign:
     """Simulate the drop tests of a vehicle, as they would have been recorded.
 
     The vehicle rests on its blocks, is released, loses and regains contact with the ground, and vibrates freely: all of
-    it exact (`drop_from_blocks`), and only then measured with noise.
+    it exact (`drop_from_blocks`), and only then measured with noise. So are a push (`push_body`) and a pass
+    (`drive_over_bump`).
 
     Parameters
     ----------
@@ -54,7 +58,10 @@ def simulate(
     sensors, loads, drops
         Records, or mappings as they stand in a campaign file. Defaults: eight sensors, four at the body's corners and
         one on each wheel; the empty vehicle; with each load a drop of all, front, rear, left and right wheels. A drop
-        without a height is one from 0.05 m.
+        without a height is one from 0.05 m. The wheels of a push are those between which the body is pushed, those of a pass
+        run over the bump, at 5 m/s where it has no speed.
+    push, bump
+        How the body is pushed in every push, and what is driven over in every pass; by hand and a half sine unless given.
     rate
         Samples per second.
     noise
@@ -62,7 +69,8 @@ def simulate(
     seed
         Of the noise; None gives other noise each time.
     duration, rest
-        Seconds recorded after and before the release.
+        Seconds recorded after and before the release; of a push or a pass after the vehicle is let go or its last wheel has
+        left the bump, and before it is first moved.
     offset
         Standard deviation of the zero-g offset that each channel draws in every drop, m/s².
     known
@@ -122,6 +130,11 @@ def simulate(
         sensor_errors=sensor_errors,
     )
     check_not_negative(problems, duration=duration, rest=rest)
+    acting = Acting(
+        record(Push, "push", push or {}, problems) or Push(),
+        record(Bump, "bump", bump or {}, problems) or Bump(),
+        gravity,
+    )
     pads = pads or PadMotion()
     pads.check(problems)
     is_linear = not nonlinear_elements(vehicle.tracks, vehicle.extras)
@@ -131,7 +144,6 @@ def simulate(
     problems.raise_if_any()
 
     before = math.ceil(rest * rate - 1e-9)
-    after = round((rest + duration) * rate) - before
     first = max(before / rate - rest, 0.0)
     loaded = {load.name: load for load in setup.loads}
     driven = {
@@ -143,18 +155,21 @@ def simulate(
     }
     released, motions = [], []
     for drop in counted(progress, "simulating the drops", [drop for drop in setup.drops if drop.excitation != "pads"]):
-        height = DEFAULT_HEIGHT if drop.height is None else drop.height
+        height = DEFAULT_HEIGHT if drop.height is None and drop.excitation == "drop" else drop.height
         released.append(replace(drop, height=height))
         with problems.collect():
-            fall = drop_from_blocks(
-                vehicle, loaded[drop.load], drop.wheels, height, duration=duration + 1 / rate, gravity=gravity
-            )
-            motions.append(fall.motion(1 / rate, after, first))
+            motion = acting.motion(vehicle, loaded[drop.load], released[-1], duration + 1 / rate)
+            after = round((rest + motion.driven_until + duration) * rate) - before
+            motions.append(motion.motion(1 / rate, after, first))
     problems.raise_if_any()
     if released and not is_linear:
         progress(Step(f"simulating the drops with {', '.join(vehicle.extras)}"))
-        blocks = [BlockSupport(loaded[drop.load], drop.wheels, drop.height or DEFAULT_HEIGHT) for drop in released]
-        motions = simulate_nonlinear_drops(vehicle, blocks, 1 / rate, after, first, gravity)
+        lengths = [motion.displacement.shape[1] for motion in motions]
+        starts = [acting.beginning(vehicle, loaded[drop.load], drop) for drop in released]
+        whole = simulate_nonlinear_drops(vehicle, starts, 1 / rate, max(lengths), first, gravity)
+        motions = [
+            Motion(*(part[:, :length] for part in motion)) for motion, length in zip(whole, lengths, strict=True)
+        ]
     free = ((drop, after_rest(motion, before)) for drop, motion in zip(released, motions, strict=True))
     recorded = [(drop, driven[i]) if i in driven else next(free) for i, drop in enumerate(setup.drops)]
     drops_in_order, motions_in_order = zip(*recorded, strict=True)

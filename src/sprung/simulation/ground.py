@@ -1,4 +1,4 @@
-"""The vehicle on the ground: static wheel loads, tyre forces, and the equations of motion with wheels off the ground."""
+"""The vehicle on the ground, flat or with bumps: static wheel loads, tyre forces, motion with wheels off the ground."""
 
 from __future__ import annotations
 
@@ -8,8 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.simulation.excitation import Drive
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import EMPTY, STATIONS, Load, Matrices, Vehicle, Wheel, highest_derivatives
+from sprung.vehicle import EMPTY, STATIONS, Layout, Load, Matrices, Vehicle, Wheel, highest_derivatives
 
 Array = NDArray[np.float64]
 
@@ -58,7 +59,9 @@ def static_wheel_loads(vehicle: Vehicle, load: Load = EMPTY, gravity: float = ST
 
 @dataclass(frozen=True, eq=False)
 class Ground:
-    """A loaded vehicle on flat ground, and its tyre forces as functions of Y = {X, Ẋ, 1}.
+    """A loaded vehicle on the ground, and its tyre forces as functions of Y = {X, Ẋ, w, 1}.
+
+    The signals that drive it are states of their own, w: the offset, sine and cosine of each.
 
     Attributes
     ----------
@@ -68,61 +71,108 @@ class Ground:
         Of each tyre, N/m and N s/m, shape (wheel,).
     wheel_loads
         Static, N, shape (wheel,).
-    wheels_at
-        Positions of the wheels among the coordinates.
+    layout
+        Of the vehicle.
+    drive
+        Signals that act on the body or lift the wheels.
     """
 
     matrices: Matrices
     stiffness: Array
     damping: Array
     wheel_loads: Array
-    wheels_at: slice
+    layout: Layout
+    drive: Drive
 
     @classmethod
-    def under(cls, vehicle: Vehicle, load: Load, gravity: float) -> Ground:
-        """Return a vehicle with its load on the ground; gravity in m/s²."""
+    def under(cls, vehicle: Vehicle, load: Load, gravity: float, drive: Drive | None = None) -> Ground:
+        """Return a vehicle with its load on the ground, flat unless a drive is given; gravity in m/s²."""
         stiffness, damping = np.array(list(tyre_rates(vehicle).values())).T
         model = vehicle.linear_model(load)
         matrices = vehicle.matrices(load)
         sag = matrices.deflection(gravity * matrices.M @ model.heave)
-        wheels_at = vehicle.layout.wheels_at
-        return cls(matrices, stiffness, damping, stiffness * sag[wheels_at], wheels_at)
+        if drive is None:
+            drive = Drive.nothing(len(matrices.M), len(stiffness))
+        return cls(matrices, stiffness, damping, stiffness * sag[vehicle.layout.wheels_at], vehicle.layout, drive)
+
+    @property
+    def wheels_at(self) -> slice:
+        """Positions of the wheels among the coordinates."""
+        return self.layout.wheels_at
+
+    @property
+    def state_size(self) -> int:
+        """Length n + m of {X, Ẋ}, with n coordinates, m with mass."""
+        return len(self.matrices.M) + self.matrices.massive
+
+    def _signals(self, parts: tuple[Array, Array, Array]) -> Array:
+        """Return columns over w from those by the offset, the sine and the cosine of each signal, each (row, signal)."""
+        return np.stack(parts, axis=2).reshape(len(parts[0]), -1)
 
     @property
     def compression(self) -> Array:
-        """Tyre rate times tyre compression, N: rows over Y, shape (wheel, n + m + 1) with n coordinates, m with mass."""
-        rows = np.zeros((len(self.stiffness), len(self.matrices.M) + self.matrices.massive + 1))
+        """Tyre rate times tyre compression, N: rows over Y, shape (wheel, Y)."""
+        rows = np.zeros((len(self.stiffness), self.state_size + 3 * len(self.drive.signals) + 1))
         rows[:, self.wheels_at] = -np.diag(self.stiffness)
+        raised = self.stiffness[:, None] * self.drive.heights
+        rows[:, self.state_size : -1] = self._signals((raised, raised, 0 * raised))
         rows[:, -1] = self.wheel_loads
         return rows
 
-    @property
-    def force(self) -> Array:
-        """Force of each tyre if it is in contact, N: rows over Y, shape (wheel, n + m + 1)."""
+    def force(self, frequencies: Array) -> Array:
+        """Return the force of each tyre if it is in contact, N: rows over Y, shape (wheel, Y).
+
+        Parameters
+        ----------
+        frequencies
+            Of the signals, rad/s, shape (signal,).
+        """
         rows = self.compression
         rows[:, len(self.matrices.M) :][:, self.wheels_at] = -np.diag(self.damping)
+        rising = self.damping[:, None] * self.drive.heights * frequencies
+        rows[:, self.state_size : -1] += self._signals((0 * rising, 0 * rising, rising))
         return rows
 
-    def generator(self, contact: NDArray[np.bool_]) -> Array:
-        """Return the generator of Ẏ = generator Y: eq. (3) without the tyre forces of the wheels off the ground.
+    def generator(self, contact: NDArray[np.bool_], frequencies: Array) -> Array:
+        """Return the generator of Ẏ = generator Y: eq. (3) with what drives it, without the tyres that are off the ground.
 
         Parameters
         ----------
         contact
             Which wheels are on the ground, shape (wheel,).
+        frequencies
+            Of the signals, rad/s, shape (signal,).
 
         Returns
         -------
         ndarray
-            Shape (n + m + 1, n + m + 1); its last column holds the constant force.
+            Shape (Y, Y); its last column holds the constant force.
         """
         n, m = len(self.matrices.M), self.matrices.massive
-        size = n + m + 1
-        generator = np.zeros((size, size))
-        generator[:-1, :-1] = self.matrices.state
-        lost = np.linalg.solve(self.matrices.leading, self._wheels.T[:, ~contact] @ self.force[~contact])
-        generator[highest_derivatives(n, m)] -= lost
+        force = self.force(frequencies)
+        generator = np.zeros((force.shape[1], force.shape[1]))
+        generator[: n + m, : n + m] = self.matrices.state
+        for signal, frequency in enumerate(frequencies.tolist()):
+            sine = n + m + 3 * signal + 1
+            generator[sine, sine + 1], generator[sine + 1, sine] = frequency, -frequency
+        driven = np.zeros((n, force.shape[1]))
+        driven[:, n + m : -1] = self._signals((self.drive.forces, self.drive.forces, 0 * self.drive.forces))
+        driven[:, n + m : -1] += self._wheels.T @ force[:, n + m : -1]
+        driven -= self._wheels.T[:, ~contact] @ force[~contact]
+        generator[highest_derivatives(n, m)] += np.linalg.solve(self.matrices.leading, driven)
         return generator
+
+    def at_rest(self, signals: Array) -> Array:
+        """Return Y at rest on the ground while the signals stay as they are.
+
+        Parameters
+        ----------
+        signals
+            N or m, shape (signal,).
+        """
+        force = self.drive.forces @ signals + self._wheels.T @ (self.stiffness * (self.drive.heights @ signals))
+        w = np.column_stack([signals, np.zeros((len(signals), 2))]).ravel()
+        return np.concatenate([self.matrices.deflection(force), np.zeros(self.matrices.massive), w, [1.0]])
 
     @property
     def _wheels(self) -> Array:
@@ -158,8 +208,10 @@ class Ground:
     def keeps_contact(self, Y: Array) -> bool:
         """Return whether, with all wheels on the ground, the energy left is too little for any tyre force to reach zero."""
         M, _, K = self.matrices
-        m = self.matrices.massive
-        X, V = np.split(Y[:-1], [len(M)])
+        m, size = self.matrices.massive, self.state_size
+        # From where it rests in the end, which is raised behind a kerb.
+        rest = self.at_rest(Y[size:-1:3])
+        X, V = np.split((Y - rest)[:size], [len(M)])
         M = M[:m, :m]
         energy = 0.5 * (X @ K @ X + V @ M @ V)
         # Energy never grows, and by the Cauchy-Schwarz inequality |k z + c ż|² <= 2 E (k² / K_z + c² / M_z),
@@ -167,4 +219,4 @@ class Ground:
         flexibility = np.diag(self.matrices.deflection(np.eye(len(K))))[self.wheels_at]
         mobility = np.diag(np.linalg.inv(M))[self.wheels_at]
         largest = np.sqrt(self.stiffness**2 * flexibility + self.damping**2 * mobility)
-        return bool(np.all(math.sqrt(2 * energy) * largest < self.wheel_loads))
+        return bool(np.all(math.sqrt(2 * energy) * largest < self.compression @ rest))

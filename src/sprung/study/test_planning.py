@@ -15,7 +15,6 @@ import numpy as np
 
 from sprung.analysis import AnalysisOptions, analyse, result_of, to_design
 from sprung.campaign import (
-    DEFAULT_HEIGHT,
     Campaign,
     CampaignSource,
     Drop,
@@ -167,7 +166,7 @@ def plan(
         vehicle, choice.tracks, choice.terms, choice.known, choice.sensors, levels, rate, duration
     )
     loaded = {load.name: load for load in setup.loads}
-    planned = tuple(PlannedDrop(loaded[drop.load], drop.wheels, drop.height or DEFAULT_HEIGHT) for drop in setup.drops)
+    planned = tuple(PlannedDrop.of(drop, loaded[drop.load]) for drop in setup.drops)
     return _tabulated(PlannedTest(measurement, planned), wanted, terms, progress)
 
 

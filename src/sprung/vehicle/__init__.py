@@ -22,7 +22,7 @@ from sprung.vehicle.elements import (
 from sprung.vehicle.finite_rotation import body_sinking, second_order_readings
 from sprung.vehicle.force_laws import ElementInput
 from sprung.vehicle.heights import LEVEL, CarriedAt, Heights
-from sprung.vehicle.kinematics import Row, coordinates, heave, state_variables
+from sprung.vehicle.kinematics import Row, body_point, coordinates, heave, state_variables
 from sprung.vehicle.layout import (
     AXLES,
     COORDINATES,
@@ -70,7 +70,7 @@ from sprung.vehicle.response import Motion, affine_response, after_rest, free_de
 from sprung.vehicle.segments import integrate_near, segments_of
 from sprung.vehicle.sensitivities import differentiate_motions
 from sprung.vehicle.sensor import PADS, Sensor, SensorPlace, uncertainties_of
-from sprung.vehicle.stepping import Stepper, Trajectory
+from sprung.vehicle.stepping import StepDrive, Stepper, Trajectory
 from sprung.vehicle.tyre_rates import differentiate_tyre_rates_at_rest, with_tyre_rates_at_rest
 from sprung.vehicle.vehicle import Vehicle
 
@@ -128,6 +128,7 @@ __all__ = [
     "Sensor",
     "SensorPlace",
     "SensorQuantity",
+    "StepDrive",
     "Stepper",
     "Tracks",
     "Trajectory",
@@ -137,6 +138,7 @@ __all__ = [
     "affine_response",
     "after_rest",
     "all_names",
+    "body_point",
     "body_sinking",
     "checked_record",
     "coordinates",

@@ -187,6 +187,10 @@ def body_point(x: float, y: float) -> Row:
     ----------
     x, y
         Position, m: forward of the front axle, left of the centreline. The centre of gravity is at x = -a.
+
+    Returns
+    -------
+    Row
     """
     bent = {"q_w": y / 2, "q_v": -x / 2}
     constant = {"z_s": 1.0, "theta": -x, "phi": y, "q_w": x * y, "q_v": -x * x / 2}

@@ -45,6 +45,21 @@ class Trajectory(NamedTuple):
     memories: Array
 
 
+class StepDrive(NamedTuple):
+    """What moves the vehicle from outside, step by step; the first axis is time.
+
+    Attributes
+    ----------
+    increments
+        What it adds to the state at the end of each step, SI, shape (step, drop, state).
+    inputs
+        What it adds to travels and rates of the rows of the nonlinear elements, m and m/s, shape (step + 1, drop, 2 row).
+    """
+
+    increments: Array
+    inputs: Array
+
+
 @dataclass(frozen=True, eq=False)
 class Stepper:
     """Time steps of several loads and lengths, for drops that use one of them each.
@@ -139,7 +154,7 @@ class Stepper:
         found: Array = self.by_state @ self.by_force + self.directly_by_force
         return found
 
-    def integrate(self, states: Array, memories: Array, steps: int) -> Trajectory:
+    def integrate(self, states: Array, memories: Array, steps: int, drive: StepDrive | None = None) -> Trajectory:
         """Integrate motions from their initial states.
 
         Parameters
@@ -150,6 +165,8 @@ class Stepper:
             Of the elements that have one, dimensionless, shape (drop, memory).
         steps
             How many.
+        drive
+            What moves the vehicle from outside.
 
         Returns
         -------
@@ -157,11 +174,12 @@ class Stepper:
             Not finite from where a motion diverges.
         """
         slots, (kind, slot) = self.slots, self.places
-        whole, kept = self.follow(states[slots], memories[slots], steps)
+        driven = None if drive is None else StepDrive(*(part[:, slots] for part in drive))
+        whole, kept = self.follow(states[slots], memories[slots], steps, driven)
         state = states.shape[1]
         return Trajectory(whole[:, kind, slot, :state], whole[:, kind, slot, state:-1], kept[:, kind, slot])
 
-    def follow(self, states: Array, memories: Array, steps: int) -> tuple[Array, Array]:
+    def follow(self, states: Array, memories: Array, steps: int, drive: StepDrive | None = None) -> tuple[Array, Array]:
         """Follow motions that are arranged by kind.
 
         Parameters
@@ -170,6 +188,8 @@ class Stepper:
             As for `integrate`, shapes (kind, motion, state) and (kind, motion, memory).
         steps
             How many.
+        drive
+            What moves the vehicle from outside, arranged likewise.
 
         Returns
         -------
@@ -191,12 +211,18 @@ class Stepper:
         motions[0, ..., :state], kept[0] = states, memories
         predicted = np.empty((*shape, state + 2 * rows))
         with np.errstate(over="ignore", invalid="ignore"):
-            at_start = states @ _transposed(self.by_state) + self.inputs[:, None, :, -1]
+            by_state = _transposed(self.by_state)
+            at_start = states @ by_state + self.inputs[:, None, :, -1]
+            if drive is not None:
+                at_start += drive.inputs[0]
             held, force = _feedback(self.directly_by_force, forces), np.zeros((*shape, rows))
             found, travel = self._solve(at_start, at_start[..., :rows], memories, force, held)
             force = before = motions[0, ..., state:-1] = found.force
             for k in range(steps):
                 np.matmul(motions[k], predictor, out=predicted)
+                if drive is not None:
+                    predicted[..., :state] += drive.increments[k]
+                    predicted[..., state:] += drive.increments[k] @ by_state + drive.inputs[k + 1]
                 found, travel = self._solve(predicted[..., state:], travel, kept[k], 2 * force - before, feedback)
                 before, force, end = force, found.force, motions[k + 1]
                 end[..., state:-1], kept[k + 1] = force, found.memory

@@ -28,7 +28,7 @@ def undeclared_loads(campaign: Campaign, prepared: Prepared) -> dict[str, Fault]
     rows = [
         (seen.drop.load, seen.wheels, seen.recording.name, seen)
         for seen in prepared.observations
-        if seen.release is not None and seen.recording.name in usable
+        if seen.release is not None and not seen.drop.is_driven and seen.recording.name in usable
     ]
     spoilt: dict[str, Fault] = {}
     for load in dict.fromkeys(load for load, *_ in rows):

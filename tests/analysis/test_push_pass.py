@@ -1,0 +1,90 @@
+"""Campaigns of pushes and of passes over a bump, alone and mixed with drops."""
+
+import numpy as np
+import pytest
+
+import sprung
+from preprocess.test_end_of_drive import CASES
+from sprung.analysis import AnalysisOptions
+from sprung.analysis.analysis import Analysis
+from sprung.analysis.stages import STAGES
+from sprung.simulation import Acting, Bump, Push
+from sprung.vehicle import EMPTY, TABLE_1_CAR, Vehicle
+from vehicle.test_layouts import PARTS
+
+EVERY_WAY = (("fl", "fr", "rl", "rr"), ("fl", "fr"), ("rl", "rr"), ("fl", "rl"), ("fr", "rr"))
+OVER_A_BUMP = (("fl", "fr", "rl", "rr"), ("fl", "rl"), ("fr", "rr"))
+
+
+def simulated(vehicle: Vehicle, excitation: str, push: str, bump: str, noise: float, seed: int = 1) -> sprung.Campaign:
+    """Pushes or passes in every way that the vehicle allows, its total mass weighed, exactly where there is no noise."""
+    ways = EVERY_WAY if excitation == "push" else OVER_A_BUMP
+    own = [tuple(wheel for wheel in way if wheel in vehicle.layout.wheels) for way in ways]
+    wheels = own if vehicle.model == "full" else [vehicle.layout.wheels]
+    if vehicle.model == "roll-plane" or (vehicle.model == "pitch-plane" and excitation == "push"):
+        wheels.append(vehicle.layout.wheels[:1])
+    return sprung.simulate(
+        vehicle,
+        drops=[{"excitation": excitation, "wheels": list(one)} for one in wheels],
+        push={"shape": push},
+        bump={"shape": bump},
+        known={"total_mass": {"value": vehicle.total_mass, "std": 0.05 * noise * vehicle.total_mass}},
+        noise=noise,
+        seed=seed,
+    )
+
+
+@pytest.mark.parametrize(("excitation", "push", "bump"), CASES)
+@pytest.mark.parametrize("vehicle", [TABLE_1_CAR, *PARTS.values()], ids=lambda one: one.model)
+def test_without_noise_identification_returns_what_was_simulated(
+    vehicle: Vehicle, excitation: str, push: str, bump: str
+) -> None:
+    result = sprung.identify(
+        simulated(vehicle, excitation, push, bump, 0.0), extras=vehicle.extras, tracks=vehicle.tracks
+    )
+    assert result.verdict.state == "accept"
+    assert not result.faults
+    for name, value in vehicle.parameters.items():
+        assert result.parameters[name].value == pytest.approx(value, rel=1e-6), name
+
+
+@pytest.mark.parametrize("noise", [0.02, 0.1])
+@pytest.mark.parametrize(("excitation", "push", "bump"), CASES)
+def test_the_fitted_vehicle_shows_when_its_motion_becomes_free(
+    excitation: str, push: str, bump: str, noise: float
+) -> None:
+    """The force of a hand fades within some hundredths of a second; a rope and a bump end at once."""
+    campaign = simulated(TABLE_1_CAR, excitation, push, bump, noise)
+    run = Analysis.start(campaign, AnalysisOptions(), STAGES[:3]).run()
+    acting = Acting(Push(shape=push), Bump(shape=bump))  # type: ignore[arg-type]
+    for decay, drop in zip(run.decays, campaign.drops, strict=True):
+        free = 0.4 + acting.motion(TABLE_1_CAR, EMPTY, drop, 3.2).decay_start
+        fades = 0.04 if (excitation, push) == ("push", "hand") else 0.003
+        assert free - fades / 4 <= decay.start <= free + fades
+
+
+@pytest.mark.parametrize(("excitation", "push", "bump"), CASES)
+def test_recordings_alone_show_no_more_than_there_is(excitation: str, push: str, bump: str) -> None:
+    result = sprung.identify(simulated(TABLE_1_CAR, excitation, push, bump, 0.02))
+    assert result.verdict.state == "accept"
+    assert not result.faults
+    assert not result.fit.model
+    off = [(result.parameters[name].value or 0.0) - value for name, value in TABLE_1_CAR.parameters.items()]
+    stds = [result.parameters[name].std or 0.0 for name in TABLE_1_CAR.parameters]
+    assert np.all(np.abs(off) < 4 * np.array(stds))
+
+
+def test_a_campaign_may_mix_drops_pushes_and_passes() -> None:
+    drops = [
+        {"excitation": "push"},
+        {"excitation": "pass", "speed": 5.0},
+        {"wheels": ["fl", "fr"]},
+        {"wheels": ["fl", "rl"]},
+    ]
+    for noise, tolerance in ((0.0, 1e-6), (0.02, 0.02)):
+        known = {"total_mass": {"value": TABLE_1_CAR.total_mass, "std": 50 * noise}}
+        result = sprung.identify(sprung.simulate(TABLE_1_CAR, drops=drops, known=known, noise=noise, seed=3))
+        assert result.verdict.state == "accept"
+        assert not result.faults
+        for name, value in TABLE_1_CAR.parameters.items():
+            assert result.parameters[name].value == pytest.approx(value, rel=tolerance), name
