@@ -19,6 +19,7 @@ _OTHER_UNITS: Mapping[str, Mapping[str, float]] = {
     "N s/m": {"N s/mm": 1e3, "kN s/mm": 1e6, "lbf s/in": 175.12684},
     "N": {"kN": 1e3, "kgf": 9.80665},
     "m per m": {"percent": 1e-2},
+    "m/s": {"km/h": 1 / 3.6, "mph": 0.44704, "mm/s": 1e-3},
 }
 """By SI unit the others in which such a quantity is stated, and what one of them is in SI."""
 
@@ -104,6 +105,7 @@ LIMITS: Mapping[str, Limits] = {
     "roll_axis_height": Limits(-2.0, 3.0, "m"),
     "motion ratio": Limits(0.2, 3.0, "m per m"),
     "block height": Limits(0.002, 0.6, "m"),
+    "speed over a bump": Limits(0.2, 15.0, "m/s"),
     "x": _SYMMETRIC_LENGTH,
     "y": Limits(-3.0, 3.0, "m"),
     "z": Limits(-1.0, 6.0, "m"),

@@ -131,8 +131,11 @@ def _is_acceleration(unit: str) -> bool:
 
 
 def _of_drop(drop: object) -> dict[str, tuple[tuple[str, float], ...]]:
-    height = getattr(drop, "height", None)
-    return {} if height is None else {"height": (("block height", height),)}
+    stated = {
+        "height": ("block height", getattr(drop, "height", None)),
+        "speed": ("speed over a bump", getattr(drop, "speed", None)),
+    }
+    return {key: ((name, value),) for key, (name, value) in stated.items() if value is not None}
 
 
 def _of_loads(parsed: ParsedFile[CampaignFile]) -> Iterator[Sized]:

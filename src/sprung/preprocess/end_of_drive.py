@@ -7,14 +7,17 @@ long before it the motion was free.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import uniform_filter1d
 
+from sprung.campaign import DropTest
+from sprung.errors import Fault
 from sprung.preprocess.landing import Landing
 from sprung.preprocess.release import Release
 
-Real = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 _PERIOD = 0.7
@@ -30,38 +33,78 @@ _CLEAR = 4.0
 _LEVEL = 0.25
 """Part of the recording at its end over which a channel's level is averaged."""
 
+_GOES_ON, _CHANGED = 0.01, 0.6
+"""Part of the largest power that the last period of a recording has, and of the power of the period before, from which
+something still drives the vehicle: a mode with a damping ratio of 0.05 keeps half its power over a period."""
+
 DIES_AWAY = "the motion has begun to die away"
 """Why a decay after a push or a bump begins where the recording alone shows it."""
 
 
-def detect_end_of_drive(values: Real, rate: float, release: Release | None, clipped: Flags) -> Landing:
-    """Detect from when on a motion dies away.
+def detect_end_of_drive(drop: DropTest, release: Release | None, clipped: Flags, last: int) -> Landing | Fault:
+    """Detect from when on the motion after a push or a bump dies away.
 
     Parameters
     ----------
-    values
-        Shape (channel, time), SI; NaN in channels that are left out.
-    rate
-        Samples per second.
+    drop
+        With its recording, corrected.
     release
         The first motion; None where the recording shows no rest before it.
     clipped
         Samples at full scale, shape (channel, time).
+    last
+        Last sample that is to be used.
 
     Returns
     -------
-    Landing
-        Free vibration is possible from the first motion on, and after the last sample that clips.
+    Landing or Fault
+        Free vibration is possible from the first motion on, and after the last sample that clips. A fault where no motion
+        dies away.
     """
-    samples = values.shape[1]
+    recording, samples = drop.recording, last + 1
+    used, rate = recording.values[recording.usable, :samples], recording.rate
+    moved = used - np.median(used[:, samples - max(int(_LEVEL * samples), 1) :], axis=1)[:, None]
+    width = min(max(round(_PERIOD * rate), 1), samples)
+    power = uniform_filter1d(moved**2, width, axis=1, mode="constant", origin=-(width // 2))
+    whole = power[:, : max(samples - width, 1)]
+    largest, least = power.max(axis=1), np.maximum(whole.min(axis=1), 0.0)
+    clear = largest > _CLEAR * least
+    power, largest, least = (part[clear] for part in (power - least[:, None], largest - least, least))
+    if not clear.any():
+        what = "no motion in it dies away: it is as large at the end as at any time; the drop is left out"
+        return Fault("no-decay", recording.name, what, _REMEDIES[drop.excitation])
+    is_driven = (power > _REMAINING * largest[:, None]).any(axis=0)
+    free = int(np.flatnonzero(is_driven)[-1]) + 1
+    if free + 2 * width < samples:
+        at_end, before = power[:, samples - width - 1], power[:, samples - 2 * width - 1]
+        part, change, over_noise = (float(np.median(at_end / other)) for other in (largest, before, least))
+        if part > _GOES_ON and change > _CHANGED and over_noise > 1:
+            what = (
+                f"something still moves the vehicle at the end of the recording: the last {_PERIOD:g} s have "
+                f"{100 * part**0.5:.0f} % of the largest motion, and it does not die away; the drop is left out"
+            )
+            return Fault("no-decay", recording.name, what, _REMEDIES[drop.excitation])
     first = 0 if release is None else release.sample
     possible = max(first, int(np.flatnonzero(clipped.any(axis=0))[-1]) + 1 if clipped.any() else 0)
-    used = values[np.logical_not(np.isnan(values).any(axis=1))]
-    moved = used - np.median(used[:, samples - max(int(_LEVEL * samples), 1) :], axis=1)[:, None]
-    width = max(round(_PERIOD * rate), 1)
-    power = uniform_filter1d(moved**2, width, axis=1, mode="constant", origin=-(width // 2))
-    largest, least = power.max(axis=1), power[:, : max(samples - width, 1)].min(axis=1)
-    clear = largest > _CLEAR * np.maximum(least, 0.0)
-    driven = (power - least[:, None])[clear] > _REMAINING * (largest - least)[clear, None]
-    last = int(np.flatnonzero(driven.any(axis=0))[-1]) + 1 if driven.any() else first
-    return Landing(min(possible, samples), min(max(possible, last), samples), DIES_AWAY)
+    return Landing(min(possible, samples), min(max(possible, free), samples), DIES_AWAY)
+
+
+def too_short(drop: DropTest, length: float, least: float) -> Fault:
+    """Return the fault that too little free vibration is recorded behind a bump or after a push.
+
+    Parameters
+    ----------
+    drop
+        With its recording.
+    length, least
+        Of free vibration, and how much is needed, s.
+    """
+    behind = "behind the bump" if drop.excitation == "pass" else "after the push"
+    what = f"{max(length, 0.0):.2f} s of free vibration {behind}, at least {least:g} s are needed; the drop is left out"
+    return Fault("no-decay", drop.recording.name, what, _REMEDIES[drop.excitation])
+
+
+_REMEDIES: Mapping[str, str] = {
+    "pass": "Record three seconds of flat, smooth road behind the bump, and neither brake nor steer there; or state end = ...",
+    "push": "Let go of the body and leave the vehicle alone for three seconds while it is recorded; or state end = ...",
+}

@@ -11,10 +11,11 @@ from numpy.typing import NDArray
 from sprung.campaign import Campaign, DropTest, Recording
 from sprung.errors import Fault
 from sprung.preprocess.decay import FreeDecay
-from sprung.preprocess.end_of_drive import detect_end_of_drive
+from sprung.preprocess.end_of_drive import detect_end_of_drive, too_short
 from sprung.preprocess.events import Events
 from sprung.preprocess.high_pass import integrate_from_rest
 from sprung.preprocess.landing import Landing, detect_landing, measure_suspension_force
+from sprung.preprocess.passage import check_speed
 from sprung.preprocess.release import Release, unknown_release
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import STATIONS, Wheel
@@ -126,12 +127,22 @@ def extract_decay(
         what = "no rest before the motion; the recording is used from its first sample on"
         do = "Give start = ... for this drop, or let the recording begin before the release."
         faults.append(Fault("no-release", recording.name, what, do))
-    landing = _find_start(campaign, drop, release, suspension, clipped)
+    last, why_end = find_end(drop)
+    if is_driven:
+        found = detect_end_of_drive(drop, release, clipped, last)
+        if isinstance(found, Fault):
+            return found
+        landing = found
+        faults += check_speed(campaign, drop)
+    else:
+        landing = _find_start(campaign, drop, release, suspension, clipped)
     clips_in_decay = np.asarray(clipped[:, landing.possible :].any(axis=1))
     faults += clipping_faults(recording, clipped, clips_in_decay)
     values = np.where(clips_in_decay[:, None], np.nan, recording.values) if clips_in_decay.any() else recording.values
-    first, (last, why_end) = landing.certain, find_end(drop)
+    first = landing.certain
     length = (last - first) / recording.rate
+    if length < _SHORTEST and is_driven:
+        return too_short(drop, length, _SHORTEST)
     if length < _SHORTEST:
         what = f"{max(length, 0.0):.2f} s of free vibration, at least {_SHORTEST} s are needed; the drop is left out"
         return Fault("no-decay", recording.name, what, "Record for at least three seconds after the release.")
@@ -163,8 +174,6 @@ def _find_start(
     if drop.start is not None:
         given = find_stated_start(drop)
         return Landing(given, given, "given as start")
-    if drop.is_driven:
-        return detect_end_of_drive(recording.values, recording.rate, release, clipped)
     if release is None:
         return Landing(0, 0, "no release was found, so the first sample")
     fall = np.sqrt(2 * (drop.height or _HIGHEST_BLOCKS) / STANDARD_GRAVITY)
