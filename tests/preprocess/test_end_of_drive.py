@@ -2,12 +2,17 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
+from scipy.signal import lfilter
 
 import sprung
+from sprung.campaign import Drop
+from sprung.errors import InputError
 from sprung.preprocess import find_flights, prepare
+from sprung.preprocess.passage import measure_delay
 from sprung.simulation import Acting, Bump, Push
-from sprung.vehicle import EMPTY, TABLE_1_CAR, Vehicle
+from sprung.vehicle import EMPTY, TABLE_1_CAR, Vehicle, Wheel
 
 CASES = [
     ("push", "hand", "half-sine"),
@@ -66,3 +71,73 @@ def test_a_recording_that_begins_on_the_bump_shows_no_rest_and_that_is_no_fault(
     assert all(seen.release is None for seen in prepared.observations)
     assert [fault.code for decay in prepared.decays for fault in decay.faults] == []
     assert all(abs(decay.start - start) < 0.3 for decay, start in zip(prepared.decays, starts, strict=True))
+
+
+def codes_and_words(campaign: sprung.Campaign) -> tuple[set[str], str]:
+    """Codes of all faults of the drops that are left out, and everything that is said of them."""
+    faults = [fault for _, own in prepare(campaign).left_out for fault in own]
+    return {fault.code for fault in faults}, " ".join(f"{fault.what} {fault.do}" for fault in faults)
+
+
+@pytest.mark.parametrize(("excitation", "behind"), [("pass", "behind the bump"), ("push", "after the push")])
+def test_a_recording_that_ends_too_soon_is_left_out(excitation: str, behind: str) -> None:
+    campaign, starts = excited(excitation, "hand", "half-sine")
+    cut = [
+        replace(one, values=one.values[:, : int((start + 0.2) * one.rate)])
+        for one, start in zip(campaign.recordings, starts, strict=True)
+    ]
+    codes, words = codes_and_words(campaign.with_recordings(cut))
+    assert codes == {"no-decay"}
+    assert behind in words
+    assert "release" not in words
+
+
+def test_a_road_that_is_not_flat_behind_the_bump_is_said_to_be_so() -> None:
+    """Random excitation of the wheels around their hop, with 1 m/s² root-mean-square beside 10 m/s² on the bump."""
+    campaign, starts = excited("pass", "hand", "half-sine")
+    random, rough = np.random.default_rng(1), []
+    for one, start in zip(campaign.recordings, starts, strict=True):
+        values, first = one.values.copy(), int(start * one.rate)
+        motion = lfilter([1, 0, -1], [1, -1.9 * np.cos(0.12), 0.9], random.standard_normal(values[:, first:].shape))
+        values[:, first:] += motion / motion.std()
+        rough.append(replace(one, values=values))
+    codes, words = codes_and_words(campaign.with_recordings(rough))
+    assert codes == {"no-decay"}
+    assert "does not die away" in words
+    assert "flat, smooth road" in words
+
+
+@pytest.mark.parametrize(("stated", "said"), [(5.0, None), (5.5, None), (3.0, "it is read in m/s"), (None, None)])
+@pytest.mark.parametrize("wheels", [("fl", "fr", "rl", "rr"), ("fl", "rl")])
+def test_a_speed_is_held_against_the_delay_of_the_rear_wheels(
+    stated: float | None, said: str | None, wheels: tuple[Wheel, ...]
+) -> None:
+    drop = Drop(excitation="pass", wheels=wheels, speed=5.0)
+    campaign = sprung.simulate(TABLE_1_CAR, drops=[drop], seed=1)
+    stating = replace(campaign, drops=tuple(replace(one, speed=stated) for one in campaign.drops))
+    assert measure_delay(campaign.drops[0], campaign) == pytest.approx(TABLE_1_CAR.wheelbase / 5.0, rel=0.05)
+    (decay,) = prepare(stating).decays
+    assert [fault.code for fault in decay.faults] == ["speed"] * (said is not None)
+    assert said is None or said in decay.faults[0].do
+
+
+def test_kilometres_per_hour_are_recognised() -> None:
+    campaign = sprung.simulate(TABLE_1_CAR, drops=[{"excitation": "pass", "speed": 10 / 3.6}], seed=1)
+    (decay,) = prepare(replace(campaign, drops=tuple(replace(one, speed=10.0) for one in campaign.drops))).decays
+    (fault,) = decay.faults
+    assert "10 km/h are 2.78 m/s" in fault.do
+    assert "10 m/s is stated" in fault.what
+
+
+def test_no_vehicle_drives_over_a_bump_at_twenty_metres_per_second() -> None:
+    with pytest.raises(InputError, match=r"5\.5556 if it was stated in km/h"):
+        sprung.simulate(TABLE_1_CAR, drops=[{"excitation": "pass", "speed": 20.0}])
+
+
+def test_front_and_rear_sensors_that_are_exchanged_show() -> None:
+    campaign = sprung.simulate(TABLE_1_CAR, drops=[{"excitation": "pass", "speed": 5.0}], seed=1)
+    other: dict[str, Wheel] = {"fl": "rl", "fr": "rr", "rl": "fl", "rr": "fr"}
+    sensors = tuple(one if one.wheel is None else replace(one, on=other[one.wheel]) for one in campaign.sensors)
+    (decay,) = prepare(replace(campaign, sensors=sensors)).decays
+    assert [fault.code for fault in decay.faults] == ["speed"]
+    assert "before the front wheels" in decay.faults[0].what

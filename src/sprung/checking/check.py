@@ -121,7 +121,7 @@ def _unread(drop: Drop, faults: Sequence[Fault]) -> DropReport:
     """Report a drop whose recording could not be read."""
     file = drop.recording_name or drop.label
     codes = tuple(fault.code for fault in faults if fault.where == file or is_within(fault.where, file))
-    kind, title = drop_kind(drop.wheels), drop.name or ""
+    kind, title = drop.kind, drop.name or ""
     return DropReport(file, drop.load, None, None, codes, kind=kind, wheels=drop.wheels, name=drop.label, title=title)
 
 
@@ -141,7 +141,7 @@ def _report(
         start=None if decay is None else decay.events.start,
         end=None if decay is None else decay.end,
         faults=tuple(fault.code for fault in faults),
-        kind=drop_kind(drop.wheels or observation.wheels),
+        kind=drop_kind(drop.wheels or observation.wheels, drop.excitation),
         wheels=drop.wheels,
         wheels_seen=merge_dropped_wheels(drop, observation.dropped) if observation.dropped else None,
         release=events.release,

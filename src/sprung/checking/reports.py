@@ -91,7 +91,8 @@ class DropReport:
     faults
         Codes.
     kind
-        ``bounce``, ``pitch front``, ``pitch rear``, ``roll left``, ``roll right``, or the wheels by name.
+        ``bounce``, ``pitch front``, ``pitch rear``, ``roll left``, ``roll right``, or the wheels by name; of other excitations
+        ``push`` or ``pass``, and ``front`` and so on.
     wheels
         Which wheels were dropped, as the campaign states; empty where it does not.
     wheels_seen

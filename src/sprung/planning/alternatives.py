@@ -11,11 +11,12 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.campaign import Excitation
 from sprung.planning.cramer_rao import CramerRaoBound
 from sprung.planning.setup import PlannedDrop, PlannedTest
-from sprung.simulation import USUAL_NOISE
+from sprung.simulation import DEFAULT_SPEED, USUAL_NOISE
 from sprung.uncertainty import KnownValue
-from sprung.vehicle import EMPTY, WHEELS, Item, Load, Sensor, Wheel, evaluate_quantity, parameter_name
+from sprung.vehicle import EMPTY, STATIONS, WHEELS, Item, Load, Sensor, Wheel, evaluate_quantity, parameter_name
 
 Real = NDArray[np.float64]
 
@@ -54,6 +55,16 @@ DROP_LABELS: Mapping[frozenset[Wheel], str] = {
     frozenset(("wheel",)): "all wheels",
 }
 """Labels of drops by their wheels."""
+
+
+_KMH = 3.6
+
+_INSTEAD: Mapping[Excitation, tuple[str, str]] = {
+    "drop": ("drops instead", "dropping the vehicle off blocks in place of all else"),
+    "push": ("pushes instead", "pushing the body by hand at the same places in place of all else"),
+    "pass": ("passes instead", f"driving over a bump at {_KMH * DEFAULT_SPEED:.0f} km/h as often in place of all else"),
+}
+"""Label and text of the test with one excitation alone."""
 
 
 class Cost(IntEnum):
@@ -147,6 +158,7 @@ def list_alternatives(test: PlannedTest) -> Iterator[Alternative]:
     yield from _weighings(test)
     yield from _repeats(test)
     yield from _drops(test)
+    yield from _passes(test)
     yield from _loads(test)
     yield from _further_sensors(test)
     for factor in QUIETER:
@@ -182,7 +194,7 @@ def _repeats(test: PlannedTest) -> Iterator[Alternative]:
 
 
 def _drops(test: PlannedTest) -> Iterator[Alternative]:
-    done = {frozenset(drop.wheels) for drop in test.drops if drop.load == EMPTY}
+    done = {frozenset(drop.wheels) for drop in test.drops if drop.load == EMPTY and drop.excitation == "drop"}
     height = test.drops[0].height
     stations = test.setup.vehicle.layout.wheels
     for wheels, name in DROP_LABELS.items():
@@ -191,6 +203,28 @@ def _drops(test: PlannedTest) -> Iterator[Alternative]:
             text = f"a drop of {name if name.startswith('fl') else f'the {name}'.replace('the all', 'all')}"
             added = (PlannedDrop(EMPTY, ordered, height),)
             yield Alternative(f"+ {name}", text, test, Cost.DROP, added=added)
+
+
+def _passes(test: PlannedTest) -> Iterator[Alternative]:
+    """Yield passes over a bump where nothing is dropped: to drive costs less than to drop."""
+    if {drop.excitation for drop in test.drops} == {"push"}:
+        passes = tuple(drop for drop in _excited(test, "pass") if drop.load == EMPTY)
+        text = f"driving over a bump at {_KMH * DEFAULT_SPEED:.0f} km/h"
+        yield Alternative("+ passes", text, test, Cost.DROP, added=passes)
+
+
+def _excited(test: PlannedTest, excitation: Excitation) -> tuple[PlannedDrop, ...]:
+    """Return the drops of a test done in another way: no pass is one of front or of rear wheels alone."""
+    stations = test.setup.vehicle.layout.wheels
+    others = [drop._replace(excitation=excitation, speed=None) for drop in test.drops]
+    if excitation != "pass":
+        return tuple(others)
+    sides = {STATIONS[wheel].side for wheel in stations}
+    of_sides = [{STATIONS[wheel].side for wheel in drop.wheels} for drop in others]
+    return tuple(
+        drop._replace(wheels=tuple(wheel for wheel in stations if STATIONS[wheel].side in (own or sides)))
+        for drop, own in zip(others, of_sides, strict=True)
+    )
 
 
 def _loads(test: PlannedTest) -> Iterator[Alternative]:
@@ -204,7 +238,7 @@ def _loads(test: PlannedTest) -> Iterator[Alternative]:
     if layout.rolls:
         half = max(float(getattr(vehicle, parameter_name("t", layout.axles[0], which))) for which in "12")
         places.append((ELSEWHERE, "left", "on the left", (middle[0], half)))
-    ways = dict.fromkeys((drop.wheels, drop.height) for drop in test.drops)
+    ways = dict.fromkeys(drop[1:] for drop in test.drops)
     for fraction, label, where, (x, y) in places:
         # Level with the centre of gravity: how high it sits is a matter of the vehicle, not of the plan.
         item = Item(mass=fraction * vehicle.total_mass, position=(x, y, vehicle.cg_height or 0.0))
@@ -251,6 +285,9 @@ def _other_tests(test: PlannedTest) -> Iterator[Alternative]:
         some = tuple(drop for drop in test.drops if frozenset(drop.wheels) == wheels)
         if some and len(some) < len(test.drops):
             yield Alternative(f"only {name}", f"drops of {name} only", test, instead=some)
+    for excitation, (label, text) in _INSTEAD.items():
+        if any(drop.excitation not in (excitation, "pads") for drop in test.drops):
+            yield Alternative(label, text, test, instead=_excited(test, excitation))
     for times in RATES:
         rate = times * test.setup.rate
         text = f"sampling at {rate:g} Hz with the same noise density"

@@ -12,7 +12,7 @@ from typing import NamedTuple
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from sprung.campaign import MissingEntry
+from sprung.campaign import MissingEntry, drop_kind
 from sprung.checking import ChannelReport, Check, DropReport
 from sprung.report.terminal.layout import hanging_text, render_table, significant_figures
 from sprung.report.terminal.result import fault_list
@@ -106,7 +106,9 @@ def drops_table(drops: Sequence[DropReport]) -> Table:
     drops
         Reports of the drops.
     """
-    headers = ("recording", "load", "dropped", "release", "landing", "lift-off", "from", "to", "length", "faults")
+    is_dropped = all(drop.kind == drop_kind(drop.wheels) or not drop.wheels for drop in drops)
+    done = ("dropped", "release") if is_dropped else ("excitation", "moves")
+    headers = ("recording", "load", *done, "landing", "lift-off", "from", "to", "length", "faults")
     rows = []
     for drop in drops:
         moments = [_moment(moment) for moment in (drop.release, drop.landing, drop.last_lift_off, drop.start, drop.end)]
@@ -115,7 +117,7 @@ def drops_table(drops: Sequence[DropReport]) -> Table:
             moments[-1] = "left out"
         rows.append([drop.label, drop.load, drop.kind, *moments, length, ", ".join(drop.faults)])
     title = "Drops: times in s on each recording's own clock; free decay from ... to ..."
-    spare = ("length", "faults", "load", "lift-off", "landing", "release")
+    spare = ("length", "faults", "load", "lift-off", "landing", done[1])
     return Table(title, headers, tuple(map(tuple, rows)), frozenset(headers[3:9]), spare)
 
 
