@@ -1,8 +1,8 @@
 """A car that MuJoCo drives over a bump: a rigid-body engine with other equations of motion than ours; not needed to run.
 
-`python -m pip install "sprung[peers]"` installs it. The body is free, its wheels slide along its own vertical axis, and tyres push
-vertically at the wheel centres as the ground under them rises, but never pull. Accelerometers turn with what they sit on and read
-specific force.
+`python -m pip install "sprung[peers]"` installs it. The body is free, its wheels slide along its own vertical axis, and tyres
+push vertically at the wheel centres as the ground under them rises, but never pull. Accelerometers turn with what they sit on
+and read specific force.
 """
 
 from __future__ import annotations
@@ -78,9 +78,7 @@ def drive_over(wheels: tuple[Wheel, ...], bump: Bump = Bump(), speed: float = SP
             along = (place[0] - reached) / bump.length
             ground = bump.height * np.sin(np.pi * along) if runs_over and 0 < along < 1 else 0.0
             force = max(load - rate * (place[2] - car.wheel_height - ground), 0.0)
-            mujoco.mj_applyFT(
-                model, state, np.array([0.0, 0.0, force]), np.zeros(3), place, body, state.qfrc_passive
-            )
+            mujoco.mj_applyFT(model, state, np.array([0.0, 0.0, force]), np.zeros(3), place, body, state.qfrc_passive)
 
     mujoco.set_mjcb_passive(push_tyres)
     try:
@@ -156,7 +154,7 @@ def campaign_of_passes(
                 rate=1 / (STEP * EVERY),
             )
             drops.append(Drop(file=name, wheels=wheels, excitation="pass", speed=SPEED).with_recording(recording))
-    weighed = {name: KnownValue(sprung_mass_at_axle(car, name)) for name in known}
+    weighed = {name: KnownValue(mass_of_axle(car, name)) for name in known}
     return sprung.Campaign(
         name=car.name,
         sensors=sensors,
@@ -168,7 +166,7 @@ def campaign_of_passes(
     )
 
 
-def sprung_mass_at_axle(car: Vehicle, name: str) -> float:
+def mass_of_axle(car: Vehicle, name: str) -> float:
     """Return what an axle weighs with its wheels, kg."""
     ahead = car.m_s * (car.b if name.startswith("front") else car.a) / car.wheelbase
     return float(ahead + 2 * (car.m_uf if name.startswith("front") else car.m_ur))

@@ -112,6 +112,18 @@ def test_parts_of_a_vehicle(tmp_path: Path) -> None:
 
 
 @pytest.mark.long
+def test_excitations(tmp_path: Path) -> None:
+    page, numbers = study("excitations.py", tmp_path, "--campaigns", "1")
+    assert "nan" not in page
+    assert len(numbers["cases"]) == 14
+    for case in numbers["cases"]:
+        assert case["verdicts"]["reject"] == case["wrong_models"] == case["incomplete"] == 0
+        assert case["rmse_over_bound"] < 3
+    is_there = importlib.util.find_spec("mujoco") is not None
+    assert bool(numbers["engine"]) == is_there == ("A car of another engine" in page)
+
+
+@pytest.mark.long
 def test_coloured(tmp_path: Path) -> None:
     page, numbers = study("coloured.py", tmp_path, "--campaigns", "1", "--tests", "1")
     assert "row has 1 campaigns" in page

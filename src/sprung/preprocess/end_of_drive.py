@@ -77,8 +77,8 @@ def detect_end_of_drive(drop: DropTest, release: Release | None, clipped: Flags,
     free = int(np.flatnonzero(is_driven)[-1]) + 1
     if free + 2 * width < samples:
         at_end, before = power[:, samples - width - 1], power[:, samples - 2 * width - 1]
-        part, change, over_noise = (float(np.median(at_end / other)) for other in (largest, before, least))
-        if part > _GOES_ON and change > _CHANGED and over_noise > 1:
+        part = float(np.median(at_end / largest))
+        if part > _GOES_ON and np.median(at_end - _CHANGED * before) > 0 and np.median(at_end - least) > 0:
             what = (
                 f"something still moves the vehicle at the end of the recording: the last {_PERIOD:g} s have "
                 f"{100 * part**0.5:.0f} % of the largest motion, and it does not die away; the drop is left out"
