@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from sprung.analysis import identify
     from sprung.campaign import Campaign, Drop, DropTest, read, schema_text, to_sep005, write
     from sprung.checking import check
-    from sprung.drafting import draft
+    from sprung.drafting import draft, draft_campaigns
     from sprung.modal_survey import is_recordings, modes
     from sprung.results import Result, load
     from sprung.simulation import simulate
@@ -44,6 +44,7 @@ __all__ = [
     "check",
     "compare",
     "draft",
+    "draft_campaigns",
     "identify",
     "is_recordings",
     "load",
@@ -71,6 +72,7 @@ _HOME = {
     "check": "checking",
     "compare": "study",
     "draft": "drafting",
+    "draft_campaigns": "drafting",
     "identify": "analysis",
     "is_recordings": "modal_survey",
     "load": "results",

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from command_line import Run, run
+from held import half_car, write_rig
 from sessions import write_session
 from sprung.simulation import simulate
 from sprung.vehicle import TABLE_1_CAR
@@ -105,3 +106,24 @@ def test_bad_folders_leave_with_one_message(tmp_path: Path, make: object, words:
     assert words in refused.err
     assert "Traceback" not in refused.err
     assert not (place / "campaign.toml").exists()
+
+
+def test_each_setting_of_a_vehicle_has_a_folder(tmp_path: Path) -> None:
+    recordings = {f"Centre/run {i}, damped_{size}.csv": (half_car(damping=i), 0.0) for i, size in ((1, 300), (2, 700))}
+    write_rig(tmp_path / "rig", recordings)
+    made = run("new", tmp_path / "rig", "-o", tmp_path / "out")
+    assert made.status == 0
+    assert "2 settings of the vehicle by the names of the recordings: a campaign for each" in made.out
+    assert "--no-settings" in made.out
+    for setting in ("damped_300", "damped_700"):
+        assert (tmp_path / "out" / setting / "campaign.toml").exists()
+        assert str(tmp_path / "out" / setting / "campaign.toml") in made.out
+    assert list((tmp_path / "rig").iterdir()) == [tmp_path / "rig" / "Centre"]
+    again = run("new", tmp_path / "rig", "-o", tmp_path / "out")
+    assert again.status == 2
+    assert "damped_300/campaign.toml" in again.err.replace("\n", "")
+    together = run("new", tmp_path / "rig", "--no-settings", "--json").json
+    assert [drop["excitation"] for drop in together["drops"]] == ["push", "push"]
+    assert together["campaign"] == str(tmp_path / "rig" / "campaign.toml")
+    several = run("new", tmp_path / "rig", "--json", "-o", tmp_path / "json").json
+    assert [campaign["setting"] for campaign in several["campaigns"]] == ["damped_300", "damped_700"]

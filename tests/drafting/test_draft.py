@@ -47,7 +47,7 @@ def one_day() -> Day:
     return day(TABLE_1_CAR, DAY, np.random.default_rng(1), rate=250.0, disturbances=1)
 
 
-def known(draft: DraftCampaign) -> dict[str, str]:
+def known(draft: DraftCampaign) -> dict[str, str | None]:
     return {sensor.channel: sensor.on for sensor in draft.sensors}
 
 

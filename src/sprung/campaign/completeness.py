@@ -21,10 +21,13 @@ _ITEMS = {
     ("sensor", "position"): "sensor positions",
     ("sensor", "on"): "wheel stations of sensors",
     ("sensor", "unit"): "sensor units",
+    ("sensor", "axis"): "axes of gyroscopes",
+    ("sensor", "relative_to"): "wheels of suspension travels",
     ("sensor", "high_pass"): "lower limits of AC-coupled sensors",
     ("load", "items"): "load items",
     ("drop", "load"): "loads of drops",
     ("drop", "wheels"): "dropped wheels",
+    ("drop", "excitation"): "excitations",
 }
 """What a place in a campaign file holds, by its section and key."""
 
@@ -80,7 +83,7 @@ def find_missing_entries(parsed: ParsedFile[CampaignFile]) -> Iterator[MissingEn
         if (
             sensor.needs_position
             and sensor.position is None
-            and ("sensor", index, "position") not in parsed.placeholders
+            and not {("sensor", index, key) for key in ("position", "relative_to")} & parsed.placeholders.keys()
         ):
             do = "A body sensor needs its position = [x, y, z]."
             where = parsed.where("sensor", index)

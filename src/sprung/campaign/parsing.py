@@ -23,8 +23,8 @@ File = TypeVar("File", bound=CampaignFile)
 File_co = TypeVar("File_co", bound=CampaignFile, covariant=True)
 
 
-_UNKNOWN: Mapping[str, Any] = {"load": "", "wheels": [], "items": []}
-"""What stands for "not known" in a key that holds text or a list; None does elsewhere."""
+_UNKNOWN: Mapping[str, Any] = {"load": "", "wheels": [], "items": [], "excitation": "drop"}
+"""What stands for "not known" in a key that holds text or a list, and what is assumed of an excitation; None does elsewhere."""
 
 
 @dataclass(frozen=True)

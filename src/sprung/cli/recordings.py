@@ -134,17 +134,36 @@ def modal(
 @app.command(epilog="Example: [bold]sprung new measurements[/bold]")
 def new(
     folder: Annotated[Path, typer.Argument(metavar="FOLDER", help="Folder with the recordings.")],
+    output: Annotated[
+        Optional[Path],  # noqa: UP045 (typer reads it)
+        typer.Option(
+            "-o",
+            "--output",
+            metavar="DIR",
+            help="Folder of campaign.toml, or of one folder per setting (default: FOLDER).",
+        ),
+    ] = None,
+    settings: Annotated[
+        bool,
+        typer.Option(
+            "--settings/--no-settings",
+            help="One campaign for each setting of the vehicle that the recordings' names state, or one for all recordings.",
+        ),
+    ] = True,
     force: Force = False,
     as_json: Json = False,
 ) -> None:
     """Draft campaign.toml from recordings: detect drops and sensors, and mark missing data."""
     with working("detecting drops") as progress:
-        drafted = sprung.draft(folder, progress=progress, overwrite=force)
-        written = drafted.write(overwrite=force)
+        drafted = sprung.draft_campaigns(folder, output, progress, settings=settings, overwrite=force)
+        written = [draft.write(overwrite=force) for draft in drafted]
     if as_json:
-        say_json(drafted.document())
+        documents = [draft.document() for draft in drafted]
+        say_json(documents[0] if len(documents) == 1 else {"campaigns": documents})
     else:
-        say(sprung.report.text_of(sprung.report.draft_view(drafted)))
+        view = sprung.report.draft_view(*drafted)
+        listed = "\n         ".join(map(str, written))
+        say(sprung.report.text_of(view))
         say(
-            f"\nWritten: {written}\nNext:    complete the missing data, then run: sprung check {shlex.quote(str(written))}\n"
+            f"\nWritten: {listed}\nNext:    complete the missing data, then run: sprung check {shlex.quote(str(written[0]))}\n"
         )

@@ -2,8 +2,9 @@
 
 from sprung.drafting.detected_drop import DetectedDrop, wheel_score
 from sprung.drafting.detection import Detection, detect_drops
-from sprung.drafting.draft import draft
-from sprung.drafting.records import DraftCampaign, DraftDrop, DraftFile, DraftSensor
+from sprung.drafting.draft import draft, draft_campaigns
+from sprung.drafting.draft_campaign import DraftCampaign
+from sprung.drafting.records import DraftDrop, DraftFile, DraftSensor
 
 __all__ = [
     "DetectedDrop",
@@ -14,5 +15,6 @@ __all__ = [
     "DraftSensor",
     "detect_drops",
     "draft",
+    "draft_campaigns",
     "wheel_score",
 ]

@@ -1,4 +1,4 @@
-"""Channel survey of a recording: which of its columns are vertical accelerations, its rate, length and largest readings."""
+"""Channel survey of a recording: what its columns measure, its rate, length and largest readings."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from scipy.ndimage import uniform_filter1d
 
 from sprung.drafting.channel import Channel, classify_channel, disambiguate_units
 from sprung.drafting.names import axis_named
+from sprung.drafting.other_channel import OtherChannel, classify_other_channel
 from sprung.errors import Problem
 
 if TYPE_CHECKING:
@@ -28,7 +29,7 @@ _SHORT = 0.01
 _PLATEAU = 3
 """Samples in a row at a channel's extreme that show its full scale."""
 
-_PIECE = 1 << 17
+PIECE = 1 << 17
 """Samples that are read together."""
 
 
@@ -50,6 +51,10 @@ class ChannelSurvey:
         s on the file's clock.
     samples
         Number of samples.
+    others
+        The channels of other quantities, and their columns in the table.
+    other_columns
+        Of those channels.
     """
 
     channels: tuple[Channel, ...]
@@ -59,6 +64,8 @@ class ChannelSurvey:
     start: float
     end: float
     samples: int
+    others: tuple[OtherChannel, ...] = ()
+    other_columns: tuple[int, ...] = ()
 
 
 def survey_channels(table: SampleTable) -> ChannelSurvey:
@@ -82,23 +89,41 @@ def survey_channels(table: SampleTable) -> ChannelSurvey:
         rate, start, end = clock, 0.0, (samples - 1) / clock
     begins, spots = _sample_stretches(table, rate)
     channels, columns, left_out = [], [], {}
-    for column, (name, stated_unit) in enumerate(zip(table.channels, table.units, strict=True)):
+    others: dict[int, OtherChannel] = {}
+    for column, name in enumerate(table.channels):
         own = spots[:, column]
         if (problem := _find_non_number(table, column, begins, own)) is not None:
             left_out[name] = f"it holds {problem.found}"
             continue
-        axis = axis_named(name, table.channels)
-        found = (
-            f"it measures along {axis}, beside one along z"
-            if axis in ("x", "y")
-            else classify_channel(name, stated_unit, own)
-        )
-        if isinstance(found, Channel):
+        found = _classify(table, column, own)
+        if isinstance(found, OtherChannel):
+            others[column] = found
+        elif isinstance(found, Channel):
             channels.append(found)
             columns.append(column)
         else:
             left_out[name] = found
-    return ChannelSurvey(disambiguate_units(channels), tuple(columns), left_out, rate, start, end, samples)
+    return ChannelSurvey(
+        disambiguate_units(channels),
+        tuple(columns),
+        left_out,
+        rate,
+        start,
+        end,
+        samples,
+        tuple(others.values()),
+        tuple(others),
+    )
+
+
+def _classify(table: SampleTable, column: int, own: Real) -> Channel | OtherChannel | str:
+    """Classify a channel by its quantity, or return why it is of no use."""
+    name, stated_unit = table.channels[column], table.units[column]
+    other = classify_other_channel(name, stated_unit, own)
+    axis = axis_named(name, table.channels)
+    if axis in ("x", "y") and (other is None or (isinstance(other, OtherChannel) and other.quantity != "angular-rate")):
+        return f"it measures along {axis}, beside one along z"
+    return other or classify_channel(name, stated_unit, own)
 
 
 def _sample_stretches(table: SampleTable, rate: float) -> tuple[list[int], Real]:
@@ -134,7 +159,7 @@ def read_pieces(table: SampleTable, survey: ChannelSurvey, factors: Real) -> Ite
     tuple
         Index of the first sample, and readings of shape (channel, time), m/s².
     """
-    for begin, piece in table.pieces(survey.columns, _PIECE):
+    for begin, piece in table.pieces(survey.columns, PIECE):
         yield begin, piece * factors[:, None]
 
 

@@ -29,12 +29,12 @@ _STILL = 8.0
 _CLEARLY = 2.0
 """By how much more a corner of the body falls with its own wheels than with the others."""
 
-_TAKEN_EMPTY = "the name of the file states no load: assumed empty"
+TAKEN_EMPTY = "the name of the file states no load: assumed empty"
 
 _PROPOSED = "loaded"
 """Name of a load that only the motion shows."""
 
-_SHORT = 20.0
+SHORT = 20.0
 """s: a recording with one drop, no longer than this, needs no window."""
 
 
@@ -123,7 +123,7 @@ def _with_loads(
     given = list(drops)
     for i, is_slower in zip(open_, slower, strict=False):
         drop = given[i]
-        notes = tuple(note for note in drop.notes if note != _TAKEN_EMPTY)
+        notes = tuple(note for note in drop.notes if note != TAKEN_EMPTY)
         if is_slower is None:
             note = "unknown whether a load was on the vehicle, as in others of these drops"
             given[i] = replace(drop, load=None, notes=(*notes, note))
@@ -295,10 +295,10 @@ def _drop(
         notes.append("dropped wheels by the name of the file")
         if any(sensor.on != "body" for sensor in sensors) and len(drop.dropped_channels) != len(hint):
             notes.append(f"though {len(drop.dropped_channels)} channels show the fall of a wheel")
-    alone = several == 1 and recording.file.end - recording.file.start <= _SHORT
+    alone = several == 1 and recording.file.end - recording.file.start <= SHORT
     window = None if alone or len(files) > 1 else drop.window
     load = load_named(common_name(files)) or next((load for load in map(load_named, files) if load is not None), None)
     if load is None and several == 1:
         load = "empty"
-        notes.append(_TAKEN_EMPTY)
+        notes.append(TAKEN_EMPTY)
     return DraftDrop(files, window, load, wheels, drop, tuple(notes))

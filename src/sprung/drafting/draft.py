@@ -3,25 +3,25 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from itertools import accumulate
 from pathlib import Path
 
-from sprung.campaign import CAMPAIGN_FILE
-from sprung.drafting.combination import combine_recordings
-from sprung.drafting.examination import ExaminedRecording, examine_recording
-from sprung.drafting.records import DraftCampaign
+from sprung.drafting.combination import TAKEN_EMPTY, combine_recordings
+from sprung.drafting.draft_campaign import DraftCampaign
+from sprung.drafting.examination import ExaminedRecording
+from sprung.drafting.examined_folder import ExaminedFolder, examine_folder, shows_drops
+from sprung.drafting.named_sensors import find_still, name_sensors
+from sprung.drafting.named_settings import NamedCondition, by_setting
+from sprung.drafting.names import load_named
+from sprung.drafting.records import DraftDrop, DraftFile, DraftSensor
+from sprung.drafting.release_drops import release_drops
 from sprung.drafting.single_channel import join_single_channel_loggers
 from sprung.drafting.text import campaign_text, missing_in
-from sprung.errors import InputError, Problem
-from sprung.progress import Progress, Step, silent
+from sprung.drafting.vehicle_part import find_part, is_on_pad
+from sprung.progress import Progress, silent
 
-_NO_RECORDINGS = frozenset(
-    (".toml", ".json", ".npz", ".html", ".htm", ".py", ".md", ".pdf", ".png", ".jpg", ".jpeg", ".svg", ".doc", ".docx", ".ppt",
-     ".pptx", ".zip", ".mp4", ".mov", ".ini", ".log", ".db")
-)  # fmt: skip
-"""File name extensions in a folder of recordings that are ignored."""
+_NO_PAD_MOVES = "it is on a pad under a tyre, and no pad moves in these recordings"
 
 
 def draft(folder: str | os.PathLike[str], progress: Progress = silent, *, overwrite: bool = False) -> DraftCampaign:
@@ -48,90 +48,122 @@ def draft(folder: str | os.PathLike[str], progress: Progress = silent, *, overwr
         reason for each of them.
     """
     folder = Path(folder)
-    _require_no_campaign(folder, overwrite)
-    names = tuple(_recordings(folder))
-    if not names:
-        do = "Put the recordings there, in any format that sprung reads."
-        raise InputError([Problem(str(folder), "no recordings", "the recordings of drops", do)])
-    sizes = [max((folder / name).stat().st_size, 1) for name in names]
-    before = [done / sum(sizes) for done in accumulate(sizes, initial=0)]
-    recordings: list[ExaminedRecording] = []
-    unreadable: dict[str, tuple[Problem, ...]] = {}
-    for i, name in enumerate(names):
+    contents = examine_folder(folder, folder, progress, overwrite=overwrite)
+    return _campaign(contents, contents.joined)
 
-        def tell(fraction: float, i: int = i, name: str = name) -> None:
-            done = before[i] + (before[i + 1] - before[i]) * fraction
-            progress(Step("looking for drops", i + 1, len(names), name, done=done))
 
-        tell(0.0)
-        try:
-            recordings.append(examine_recording(folder, name, tell))
-        except InputError as error:
-            unreadable[name] = error.problems
-    recordings = list(join_single_channel_loggers(recordings, folder))
-    if not any(recording.drops for recording in recordings):
-        raise InputError(
-            [*_no_drops(recordings), *(problem for problems in unreadable.values() for problem in problems)]
-        )
-    sensors, drops, still = combine_recordings(recordings)
-    files = [recording.file for recording in recordings]
-    held = {recording.file.name: {channel.name for channel in recording.channels} for recording in recordings}
+def draft_campaigns(
+    folder: str | os.PathLike[str],
+    output: str | os.PathLike[str] | None = None,
+    progress: Progress = silent,
+    *,
+    settings: bool = True,
+    overwrite: bool = False,
+) -> tuple[DraftCampaign, ...]:
+    """Draft a campaign for each setting of the vehicle that the names of the recordings state.
+
+    Recordings with other dampers, or another pressure, are those of another vehicle: each setting has a campaign of its own.
+
+    Parameters
+    ----------
+    folder
+        Where the recordings are.
+    output
+        Folder of the campaign file, or of a folder for each setting; by default that of the recordings.
+    progress
+        Called with each recording that is begun, and within long ones, with the part that is done.
+    settings
+        Whether each setting has a campaign of its own; otherwise there is one for all recordings.
+    overwrite
+        Whether campaign files that are there already are to be replaced.
+
+    Returns
+    -------
+    tuple of DraftCampaign
+        One where the names state no settings; none is written yet.
+
+    Raises
+    ------
+    InputError
+        As `draft`.
+    """
+    folder = Path(folder)
+    target = folder if output is None else Path(output)
+    contents = examine_folder(folder, target, progress, overwrite=overwrite, settings=settings)
+    groups = by_setting({own.file.name: contents.conditions[own.file.name] for own in contents.recordings})
+    members = {
+        setting: [own for own in contents.recordings if own.file.name in names] for setting, names in groups.items()
+    }
+    members = {setting: own for setting, own in members.items() if shows_drops(own)}
+    if len(members) < 2 or not settings:
+        return (_campaign(contents, contents.joined, output=None if output is None else target),)
+    campaigns = []
+    for setting, own in members.items():
+        joined = join_single_channel_loggers(own, folder)
+        campaigns.append(_campaign(contents, joined, setting=setting, output=target / str(setting)))
+    return tuple(campaigns)
+
+
+def _campaign(
+    contents: ExaminedFolder,
+    recordings: Sequence[ExaminedRecording],
+    *,
+    setting: str | None = None,
+    output: Path | None = None,
+) -> DraftCampaign:
+    """Combine recordings to a campaign."""
+    sensors: tuple[DraftSensor, ...] = ()
+    drops: tuple[DraftDrop, ...] = ()
+    still: dict[str, str] = {}
+    if any(recording.drops for recording in recordings):
+        sensors, drops, found = combine_recordings(recordings)
+        still |= found
+    still |= find_still(recordings)
+    sensors = (*sensors, *name_sensors(recordings, {*still, *(sensor.channel for sensor in sensors)}))
+    model, sensors, drops = find_part(sensors, drops)
+    drops = (*drops, *release_drops(recordings, sensors, model))
+    if not any(drop.excitation == "pads" for drop in drops):
+        still |= {sensor.channel: _NO_PAD_MOVES for sensor in sensors if is_on_pad(sensor)}
+        sensors = tuple(sensor for sensor in sensors if not is_on_pad(sensor))
+    place = {recording.file.name: i for i, recording in enumerate(recordings)}
+    drops = tuple(sorted(drops, key=lambda drop: (place.get(drop.files[0], 0), drop.found.begin)))
+    files = tuple(_with_left_out(recording, still) for recording in recordings)
+    name = contents.folder.absolute().name or "vehicle"
     made = DraftCampaign(
-        folder=folder,
-        name=folder.absolute().name or "vehicle",
+        folder=contents.folder,
+        name=name if setting is None else f"{name}, {setting}",
         sensors=sensors,
-        drops=drops,
-        files=tuple(
-            replace(
-                file,
-                left_out={**file.left_out, **{name: why for name, why in still.items() if name in held[file.name]}},
-            )
-            for file in files
-        ),
-        unreadable=unreadable,
+        drops=tuple(_with_named_load(drop, contents.conditions) for drop in drops),
+        files=files,
+        unreadable=contents.unreadable,
+        model=model,
+        copies=contents.copies,
+        setting=setting,
+        output=output,
     )
     text = campaign_text(made)
     return replace(made, text=text, missing=missing_in(text))
 
 
-def _require_no_campaign(folder: Path, overwrite: bool) -> None:
-    if not folder.is_dir():
-        found = "a file" if folder.exists() else "no such folder"
-        do = "Give the folder that the recordings are in."
-        raise InputError([Problem(str(folder), found, "a folder with recordings", do)])
-    path = folder / CAMPAIGN_FILE
-    if path.exists() and not overwrite:
-        do = f"Continue with it (sprung check {path}), or remove it and draft it anew."
-        raise InputError([Problem(str(path), "a campaign file", "a folder that has none yet", do)])
+def _with_left_out(recording: ExaminedRecording, still: Mapping[str, str]) -> DraftFile:
+    held = {channel.name for channel in recording.channels} | {channel.name for channel in recording.others}
+    left_out = {name: why for name, why in still.items() if name in held}
+    return replace(recording.file, left_out={**recording.file.left_out, **left_out})
 
 
-def _recordings(folder: Path) -> Iterator[str]:
-    """Yield the files that may be recordings, in the order of their names; without hidden files and results."""
-    found = []
-    for path in folder.rglob("*"):
-        relative = path.relative_to(folder)
-        hidden = any(part.startswith((".", "~")) for part in relative.parts)
-        results = any((parent / "results.json").exists() for parent in path.parents if folder in parent.parents)
-        if path.is_file() and not hidden and not results and path.suffix.lower() not in _NO_RECORDINGS:
-            found.append(relative)
-    # The channel files of ISO-MME, which end in a number, belong to the descriptor beside them or above.
-    descriptors = {folder / path.parent for path in found if path.suffix.lower() in {".mme", ".chn"}}
-    for relative in sorted(found, key=lambda path: [part.casefold() for part in path.parts]):
-        part_of = relative.suffix[1:].isdecimal() and any(
-            parent in descriptors for parent in (folder / relative).parents
-        )
-        if not part_of:
-            yield relative.as_posix()
+def _with_named_load(drop: DraftDrop, conditions: Mapping[str, NamedCondition]) -> DraftDrop:
+    """Return a drop with the load that a number in its name stands for, where words state none."""
+    condition = conditions.get(drop.files[0], NamedCondition())
+    if condition.load is None or _states_load(drop):
+        return drop
+    notes = tuple(note for note in drop.notes if note != TAKEN_EMPTY)
+    said = (
+        TAKEN_EMPTY
+        if condition.load == "empty"
+        else f"load by the second number in the name of the file, {condition.load}"
+    )
+    return replace(drop, load=condition.load, notes=(*notes, said), proposed=False)
 
 
-def _no_drops(recordings: Sequence[ExaminedRecording]) -> Iterator[Problem]:
-    for recording in recordings:
-        why = recording.file.rejected[0].why if recording.file.rejected else "it shows no motion"
-        found = f"no drop: {why}"
-        expected = "at least one drop, with some rest before it"
-        yield Problem(
-            recording.file.name,
-            found,
-            expected,
-            "Check that it is the right recording, and state its unit if it has another.",
-        )
+def _states_load(drop: DraftDrop) -> bool:
+    return any(load_named(name) is not None for name in drop.files)

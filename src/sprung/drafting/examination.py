@@ -11,6 +11,7 @@ import numpy as np
 
 from sprung.drafting.channel import Channel
 from sprung.drafting.channel_survey import (
+    PIECE,
     ChannelSurvey,
     detect_full_scales,
     largest_reading,
@@ -18,8 +19,13 @@ from sprung.drafting.channel_survey import (
     survey_channels,
 )
 from sprung.drafting.detected_drop import DetectedDrop, is_on_wheel
-from sprung.drafting.detection import Detection, detect_drops
+from sprung.drafting.detected_release import DetectedRelease
+from sprung.drafting.detection import Detection, RejectedEvent, detect_drops
+from sprung.drafting.other_channel import OtherChannel
+from sprung.drafting.pad_motion import moving_pads
+from sprung.drafting.quantity_names import is_pad_named
 from sprung.drafting.records import DraftFile
+from sprung.drafting.release_detection import average_pieces, detect_releases
 from sprung.errors import InputError, Problem
 from sprung.formats import MIN_RATE, read_table
 from sprung.units import si_factor
@@ -50,6 +56,12 @@ class ExaminedRecording:
         By channel a reading at which it stays for some samples of a drop.
     files
         Names of the recordings, where those of several loggers were joined.
+    others
+        Its channels of other quantities.
+    releases
+        What its displacements show, where its accelerations show no drop.
+    pads
+        Its channels of pads that move.
     """
 
     file: DraftFile
@@ -57,6 +69,9 @@ class ExaminedRecording:
     drops: tuple[DetectedDrop, ...]
     full_scale: Mapping[str, float]
     files: tuple[str, ...] = ()
+    others: tuple[OtherChannel, ...] = ()
+    releases: tuple[DetectedRelease, ...] = ()
+    pads: tuple[str, ...] = ()
 
 
 def examine_recording(folder: Path, name: str, progress: Callable[[float], None]) -> ExaminedRecording:
@@ -88,22 +103,29 @@ def examine_recording(folder: Path, name: str, progress: Callable[[float], None]
         ) from None
     seen = survey_channels(table)
     _require_channels(name, seen)
-    seen, found = _detect(table, seen, progress)
+    seen, found = _detect(table, seen, progress) if seen.channels else (seen, Detection(()))
+    pads, releases, motions = _motions(table, seen, no_drop=not found.drops)
+    found = Detection(()) if pads else found
     drops = tuple(_on_clock(drop, table, seen) for drop in found.drops)
     scales: dict[str, float] = {}
     for drop in found.drops:
         first, last = (int((time - seen.start) * seen.rate) for time in (drop.release, drop.end))
         for channel, size in detect_full_scales(table, seen, first, last).items():
             scales[channel] = max(size, scales.get(channel, 0.0))
-    file = DraftFile(name, seen.rate, seen.start, seen.end, len(drops), found.rejected, found.events, seen.left_out)
-    return ExaminedRecording(file, seen.channels, drops, scales)
+    number = len(drops) + len(releases) + bool(pads)
+    rejected = () if releases or pads else (*found.rejected, *motions)
+    file = DraftFile(name, seen.rate, seen.start, seen.end, number, rejected, found.events, seen.left_out)
+    return ExaminedRecording(file, seen.channels, drops, scales, others=seen.others, releases=releases, pads=pads)
 
 
 def _require_channels(name: str, seen: ChannelSurvey) -> None:
     """Raise if a recording holds no channel in which a drop could be detected."""
-    if not seen.channels:
+    if not seen.channels and not any(channel.quantity == "displacement" for channel in seen.others):
         reasons = "; ".join(f"'{channel}': {why}" for channel, why in list(seen.left_out.items())[:8])
         found = f"no vertical acceleration ({reasons})" if reasons else "no channels"
+        if seen.others:
+            measured = ", ".join(f"'{channel.name}' {channel.quantity.replace('-', ' ')}" for channel in seen.others)
+            found = f"neither accelerations nor displacements ({measured})"
         do = "If one of them is, state its unit in the file, such as 'ch1 [g]'."
         raise InputError([Problem(name, found, "channels of accelerometers", do)])
     if not seen.rate >= MIN_RATE:
@@ -138,6 +160,21 @@ def _drops_of(table: SampleTable, seen: ChannelSurvey, progress: Callable[[float
     factors = np.array([channel.factor for channel in seen.channels])
     read = read_pieces(table, seen, factors)
     return detect_drops(read, seen.rate, start=seen.start, samples=seen.samples, progress=progress)
+
+
+def _motions(
+    table: SampleTable, seen: ChannelSurvey, *, no_drop: bool
+) -> tuple[tuple[str, ...], tuple[DetectedRelease, ...], tuple[RejectedEvent, ...]]:
+    """Return the pads that move, and the releases and other motions that the displacements show where there is no drop."""
+    pairs = [(c, i) for c, i in zip(seen.others, seen.other_columns, strict=True) if c.quantity == "displacement"]
+    names = tuple(channel.name for channel, _ in pairs)
+    if not pairs or not (no_drop or any(map(is_pad_named, names))):
+        return (), (), ()
+    factors = np.array([[channel.factor] for channel, _ in pairs])
+    pieces = ((begin, piece * factors) for begin, piece in table.pieces([column for _, column in pairs], PIECE))
+    averages = average_pieces(pieces, seen.rate, seen.start)
+    pads = moving_pads(averages, names)
+    return (pads, (), ()) if pads or not no_drop else ((), *detect_releases(averages, names))
 
 
 def _on_clock(drop: DetectedDrop, table: SampleTable, seen: ChannelSurvey) -> DetectedDrop:

@@ -111,6 +111,16 @@ def _stations(words: list[str]) -> tuple[Wheel, ...]:
     return tuple(wheel for wheel in WHEELS if wheel in coded)
 
 
+def ends_named(channel: str) -> set[str]:
+    """Return the ends of the vehicle, ``f`` and ``r``, that a channel's name states by words."""
+    return _ends(_words(channel))
+
+
+def sides_named(channel: str) -> set[str]:
+    """Return the sides of the vehicle, ``l`` and ``r``, that a channel's name states by words."""
+    return _sides(_words(channel))
+
+
 def _ends(words: list[str]) -> set[str]:
     return {end for end, names in _ENDS.items() if any(word in names for word in words)}
 
@@ -128,10 +138,21 @@ def part_named(channel: str) -> Literal["body", "wheel"] | None:
     channel
         Its name.
     """
+    parts = parts_named(channel)
+    return None if len(parts) != 1 else "wheel" if "wheel" in parts else "body"
+
+
+def parts_named(channel: str) -> set[str]:
+    """Return which of body and wheel a channel's name states.
+
+    Parameters
+    ----------
+    channel
+        Its name.
+    """
     code = _ISO_MME.fullmatch(channel.strip().upper())
     words = [code["main"].lower()] if code is not None else _words(channel)
-    wheel, body = any(word in _WHEEL for word in words), any(word in _BODY for word in words)
-    return None if wheel == body else "wheel" if wheel else "body"
+    return {part for part, names in (("wheel", _WHEEL), ("body", _BODY)) if any(word in names for word in words)}
 
 
 def axis_named(channel: str, others: tuple[str, ...]) -> Literal["x", "y", "z"] | None:

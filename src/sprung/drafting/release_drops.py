@@ -1,0 +1,88 @@
+"""Drops, pushes and rides on pads that displacements show, as sections of a campaign file."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+import numpy as np
+
+from sprung.drafting.combination import SHORT, TAKEN_EMPTY
+from sprung.drafting.detected_release import DetectedRelease
+from sprung.drafting.examination import ExaminedRecording
+from sprung.drafting.excitation import classify_excitation, wheels_of_excitation
+from sprung.drafting.layout_names import wheels_in_part, wheels_named_anywhere
+from sprung.drafting.names import load_named
+from sprung.drafting.records import DraftDrop, DraftSensor
+from sprung.drafting.vehicle_part import stations_of
+from sprung.vehicle import WHEELS, VehicleModel, Wheel
+
+
+def release_drops(
+    recordings: Sequence[ExaminedRecording], sensors: Sequence[DraftSensor], model: VehicleModel
+) -> Iterator[DraftDrop]:
+    """Yield the releases of recordings in which no accelerometer shows a drop.
+
+    Parameters
+    ----------
+    recordings
+        As examined.
+    sensors
+        Of the campaign.
+    model
+        Which part of a vehicle it is.
+
+    Yields
+    ------
+    DraftDrop
+        In the order of the recordings and of time.
+    """
+    stations = stations_of(sensors, model)
+    for recording in recordings:
+        if recording.pads:
+            yield _on_pads(recording, stations, model)
+        for release in recording.releases:
+            yield _drop(recording, release, sensors, stations, model)
+
+
+def _on_pads(recording: ExaminedRecording, stations: Mapping[str, Wheel | None], model: VehicleModel) -> DraftDrop:
+    """Return the whole recording as a drop on pads."""
+    file = recording.file
+    over = {stations[channel] for channel in recording.pads if channel in stations}
+    wheels = () if None in over else tuple(wheel for wheel in wheels_in_part(WHEELS, model) if wheel in over)
+    whole = DetectedRelease(
+        file.start, file.start, file.end, file.end, "the recording ends", (), np.zeros(0), np.zeros(0)
+    )
+    load = load_named(file.name)
+    notes = (f"{', '.join(recording.pads)} move: driven by pads", *([TAKEN_EMPTY] if load is None else []))
+    return DraftDrop((file.name,), None, load or "empty", wheels, whole.as_drop(), notes, excitation="pads")
+
+
+def _drop(
+    recording: ExaminedRecording,
+    release: DetectedRelease,
+    sensors: Sequence[DraftSensor],
+    stations: Mapping[str, Wheel | None],
+    model: VehicleModel,
+) -> DraftDrop:
+    name = recording.file.name
+    excitation, moved, why = classify_excitation(release, sensors, name)
+    notes = [
+        f"at rest for {release.release - release.begin:.2f} s, released at {release.release:.2f} s",
+        why,
+        f"usable until {release.end:.2f} s, when {release.why_end}",
+    ]
+    wheels, how = wheels_of_excitation(moved, stations, wheels_named_anywhere(name), model)
+    alone = len(recording.releases) == 1
+    load = load_named(name)
+    if load is None and alone:
+        load = "empty"
+    notes += [how] if how else []
+    notes += [TAKEN_EMPTY] if load_named(name) is None and alone else []
+    # The release comes late enough, and the window whole, where the recording is short and holds nothing else.
+    whole = alone and recording.file.end - recording.file.start <= SHORT and not _is_disturbed(release)
+    window = None if whole else (release.begin, release.end)
+    return DraftDrop((name,), window, load, wheels, release.as_drop(), tuple(notes), excitation=excitation)
+
+
+def _is_disturbed(release: DetectedRelease) -> bool:
+    return "next motion" in release.why_end
