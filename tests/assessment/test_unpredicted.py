@@ -20,7 +20,7 @@ def campaign(seed: int, **changed: float) -> Campaign:
     return sprung.simulate(vehicle, loads=[LOAD], noise=0.02, seed=seed, known={"total_mass": TABLE_1_CAR.total_mass})
 
 
-def judged(made: Campaign) -> Verdict:
+def judged(made: Campaign, contradicting: int = 0) -> Verdict:
     """Fit and judge without looking for what may be wrong, which would leave the drop out."""
     choice, decays = choose_structure(made), prepare(made).decays
     optimum = fit_linear(decays, choice.linear_models, made.sensors, choice.known, start=TABLE_1_CAR.parameters)
@@ -33,6 +33,7 @@ def judged(made: Campaign) -> Verdict:
         channels,
         (),
         drops,
+        contradicting,
     )
 
 
@@ -54,6 +55,14 @@ def test_drops_of_one_vehicle_are_predicted() -> None:
         verdict = judged(campaign(seed))
         assert verdict.state == "accept"
         assert verdict.reasons[1].startswith("each drop is predicted by the others")
+
+
+@pytest.mark.parametrize(("contradicting", "state"), [(1, "accept"), (5, "accept"), (6, "reject"), (9, "reject")])
+def test_more_than_a_third_of_all_drops_are_no_mishap(contradicting: int, state: str) -> None:
+    """Of recordings of two vehicles those of one are left out one after the other, until the rest agrees."""
+    verdict = judged(campaign(1), contradicting)
+    assert verdict.state == state
+    assert ("no vehicle recorded all of them" in verdict.reasons[0]) == (state == "reject")
 
 
 def test_one_drop_alone_has_no_others() -> None:

@@ -45,6 +45,9 @@ ALONE, _FAR, _FEW = 10.0, 25.0, 3
 """How many times further from the others than these are a drop must be to stand alone, how far at least (five standard errors
 in every direction), and among how many others that shows."""
 
+_SEVERAL = 3
+"""Drops that contradict the others from which they are no single mishaps any more."""
+
 _NO_DROPS: Mapping[str, DropValidation] = MappingProxyType({})
 
 
@@ -78,6 +81,7 @@ def decide_verdict(
     channels: Sequence[str],
     suspected: Sequence[str] = (),
     drops: Mapping[str, DropValidation] = _NO_DROPS,
+    contradicting: int = 0,
 ) -> Verdict:
     """Decide whether the estimates may be used.
 
@@ -95,6 +99,8 @@ def decide_verdict(
         Faults of the campaign file or an instrument that are probable, in words.
     drops
         Cross-validation of each drop, by its name.
+    contradicting
+        Drops that were left out because they contradict the others.
 
     Returns
     -------
@@ -106,7 +112,11 @@ def decide_verdict(
     unexplained = list(_unexplained(size, float(over_noise[worst]), channels[worst]))
     contradicted = max(map(abs, fit.contradictions.values()), default=0.0) > BEYOND_DOUBT
     is_unusable = size > UNUSABLE or (size > EXPLAINED and contradicted)
-    reject = [*(unexplained if is_unusable else ()), *_no_fit(fit, parameters)]
+    reject = [
+        *(unexplained if is_unusable else ()),
+        *_no_fit(fit, parameters),
+        *_several_vehicles(contradicting, len(drops)),
+    ]
     doubt = [
         *suspected,
         *(() if is_unusable else unexplained),
@@ -141,6 +151,15 @@ def _no_fit(fit: FitStatistics, parameters: Mapping[str, Estimate]) -> Iterator[
         estimate.status == "unidentifiable" for estimate in parameters.values()
     ):
         yield "nothing is determined: these recordings do not show a vehicle vibrating freely"
+
+
+def _several_vehicles(contradicting: int, used: int) -> Iterator[str]:
+    """Yield that too many drops had to be left out for those that remain to be believed."""
+    if contradicting > max(used / 2, _SEVERAL - 1):
+        yield (
+            f"{contradicting} of {contradicting + used} drops contradict the others: no vehicle recorded all of them; look for "
+            "recordings of another vehicle, load or test among them"
+        )
 
 
 def _contradictions(fit: FitStatistics) -> Iterator[str]:

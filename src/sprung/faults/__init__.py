@@ -9,12 +9,14 @@ well.
 from sprung.faults.candidate_fit import CandidateFit, decays_without_wheel_sensors
 from sprung.faults.consistency import Consistency, consistency_of, largest_expected_gain, score_faults_of
 from sprung.faults.drift import detect_drift
+from sprung.faults.drop import CONTRADICTING
 from sprung.faults.hypothesis import Hypothesis
 from sprung.faults.isolate import isolate, largest_gain_by_steps
 from sprung.faults.residual_table import is_explained, reference_noise, residual_table
 from sprung.faults.statements.search import examine
 
 __all__ = [
+    "CONTRADICTING",
     "CandidateFit",
     "Consistency",
     "Hypothesis",

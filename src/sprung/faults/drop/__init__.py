@@ -11,4 +11,7 @@ from sprung.faults.drop.unlike import unlike_repeats
 DROP_HYPOTHESES = (other_load, unlike_repeats, brake, clock, channel_of_drop, exchanged_columns)
 """Each takes a `DropDeletion` and yields hypotheses."""
 
-__all__ = ["DROP_HYPOTHESES", "DropDeletion"]
+CONTRADICTING = frozenset({"brake", "unlike-repeats"})
+"""Codes of drops that are left out because they contradict all others."""
+
+__all__ = ["CONTRADICTING", "DROP_HYPOTHESES", "DropDeletion"]
