@@ -115,6 +115,7 @@ def studies(session: nox.Session) -> None:
         "at_the_bound",
         "parts_of_a_vehicle",
         "excitations",
+        "pads",
         "quantities",
         "coloured",
         "no_guess",

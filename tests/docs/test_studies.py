@@ -112,6 +112,20 @@ def test_parts_of_a_vehicle(tmp_path: Path) -> None:
 
 
 @pytest.mark.long
+def test_pads(tmp_path: Path) -> None:
+    page, numbers = study("pads.py", tmp_path, "--campaigns", "1")
+    assert "nan" not in page
+    assert {case["vehicle"] for case in numbers["cases"]} == {"Table 1 car", "Quarter car", "Roll plane", "Pitch plane"}
+    for case in numbers["cases"]:
+        assert case["campaigns"] == case["accepted"] == 1
+        assert case["largest_error_percent"] < 1.0
+        for one in case["quantities"].values():
+            # Errors are standard normal in units of the bound: beyond six of them something is wrong.
+            assert 0 <= one["rmse_over_bound"] < 6
+            assert 0.6 < one["stated_over_bound"] < 1.6
+
+
+@pytest.mark.long
 def test_excitations(tmp_path: Path) -> None:
     page, numbers = study("excitations.py", tmp_path, "--campaigns", "1")
     assert "nan" not in page

@@ -26,11 +26,15 @@ def amplitudes_of(
         Called with each step that begins.
     """
     structure = run.model.structure
-    loads = [decay.load for decay in run.decays]
+    # On pads no vibration is free.
+    free = [(motion, decay.load) for motion, decay in zip(motions, run.decays, strict=True) if not decay.pads]
+    if not free:
+        return ()
+    loads = [load for _, load in free]
     load = EMPTY.name if EMPTY.name in loads else loads[0]
     # Modes belong to a vehicle on the ground.
     grounded = replace(structure, unilateral_tyres=False)
     model = grounded.nonlinear_models[load] if structure.is_nonlinear else structure.linear_models[load]
-    own = [motion for motion, of in zip(motions, loads, strict=True) if of == load]
+    own = [motion for motion, of in free if of == load]
     found = follow_modes(run.uncertainty, model, run.campaign.sensors, own, progress)
     return tuple(replace(one, load=load) for one in found)

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from sprung.analysis.analysis import Analysis
+from sprung.preprocess import FreeDecay
 from sprung.vehicle import LOAD_MASS, is_of_sensor, parameter_names
 
 if TYPE_CHECKING:
@@ -14,6 +16,9 @@ if TYPE_CHECKING:
 
 _BEFORE_DECAY = 0.1
 """s from the release to the decay in a usual drop, for planning further ones."""
+
+_USUAL = 3.0
+"""s that a drop is recorded where none was."""
 
 
 def to_design(run: Analysis) -> PlannedTest:
@@ -45,7 +50,7 @@ def to_design(run: Analysis) -> PlannedTest:
         {name: one for name, one in structure.known.items() if not name.startswith(LOAD_MASS)},
         structure.sensors,
         rate=float(np.median([decay.rate for decay in decays])),
-        duration=_BEFORE_DECAY + float(np.median([decay.samples / decay.rate for decay in decays])),
+        duration=_duration(decays),
         heights=structure.heights,
         name=campaign.name,
     )
@@ -53,9 +58,15 @@ def to_design(run: Analysis) -> PlannedTest:
     dropped = [
         PlannedDrop.of(seen.drop, campaign.load(seen.drop.load), seen.wheels)
         for seen in run.prepared.observations
-        if seen.recording.name in used
+        if seen.recording.name in used and seen.drop.excitation != "pads"
     ]
     return completed_test(setup, fit, dropped)
+
+
+def _duration(decays: Sequence[FreeDecay]) -> float:
+    """Return how long further drops are to be recorded, s: as long as those before, records on pads left out."""
+    lengths = [decay.samples / decay.rate for decay in decays if not decay.pads]
+    return _BEFORE_DECAY + float(np.median(lengths or [_USUAL]))
 
 
 def recommend_next_step(run: Analysis) -> str:

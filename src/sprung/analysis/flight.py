@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from sprung.analysis.analysis import Analysis
 from sprung.analysis.clocks import use_clock_flights
+from sprung.analysis.on_pads import NOT_STEPPED, has_pads
 from sprung.campaign import Campaign
 from sprung.estimation import CONVERGED, FitStatistics, uncertainty_of, weigh_statements
 from sprung.preprocess import DropObservation, FreeDecay, find_flights
@@ -46,6 +47,8 @@ _LONG_ENOUGH = 0.25
 def use_flight(run: Analysis, progress: Progress) -> Analysis:
     """Use the drops from their releases on, where that is asked for or needed and determines the parameters better."""
     asked = run.campaign.model.fall if run.options.fall is None else run.options.fall
+    if has_pads(run):
+        return run.noted("use_flight", "the fall is not used", NOT_STEPPED) if asked else run
     is_sound = run.fit.converged and not run.suspected and run.uncertainty.inflation < _SOUND
     if is_sound and not run.model.structure.is_time_stepped:
         run = use_clock_flights(run, progress)

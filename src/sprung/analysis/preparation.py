@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from sprung.analysis.analysis import Analysis
+from sprung.analysis.on_pads import require_linear_terms
 from sprung.errors import Problems
 from sprung.faults import examine
 from sprung.preprocess import Prepared, exclude_drops, prepare
@@ -31,6 +32,7 @@ def preprocess(run: Analysis, progress: Progress) -> Analysis:
         run = replace(run, preparation=prepare(run.campaign, progress), preparations=run.preparations + 1)
     prepared = exclude_drops(run.campaign, run.prepared, run.excluded)
     _require_decays(run, prepared)
+    require_linear_terms(replace(run, preparation=prepared))
     what = f"{len(prepared.decays)} of {len(run.campaign.drops)} drops can be used"
     reasons = "; ".join(f"{where}: {fault.what}" for where, fault in run.excluded.items())
     return replace(run, preparation=prepared).noted("preprocess", what, reasons)

@@ -7,6 +7,7 @@ from dataclasses import replace
 from sprung.analysis.analysis import Analysis
 from sprung.analysis.baseline import described, from_contact, structures
 from sprung.analysis.first_term import explaining_term
+from sprung.analysis.on_pads import NOT_STEPPED, has_pads
 from sprung.faults import consistency_of
 from sprung.progress import Progress
 from sprung.selection import (
@@ -71,6 +72,8 @@ def select_finite_rotation(run: Analysis, progress: Progress) -> Analysis:
 
 def select_nonlinear_terms(run: Analysis, progress: Progress) -> Analysis:
     """Fit the nonlinear terms that are requested, or select those that the recordings support."""
+    if has_pads(run):
+        return run.noted("select_nonlinear_terms", "no nonlinear term is tried", NOT_STEPPED)
     before, requested = replace(run.model, progress=progress), run.requested
     if requested is not None and requested.is_nonlinear:
         search = fit_forced_terms(before, requested)

@@ -99,11 +99,16 @@ def cross_validate_drops(
     coloured = fit.inflation if fit.inflated_by == "coloured residuals" else 1.0
     noise = estimate_noise_level(fit, decays)
     free = len(state_variables(fit.names))  # a drop's initial state takes up as many samples of noise
-    of_drops = zip(decays, motions, predicted, fit.residual, describe_residuals(fit, decays, noise), strict=True)
-    for decay, motion, prediction, residual, statistics in of_drops:
+    observations = optimum.problem.objective.observations
+    of_drops = zip(
+        decays, motions, predicted, fit.residual, describe_residuals(fit, decays, noise), observations, strict=True
+    )
+    for decay, motion, prediction, residual, statistics, counts in of_drops:
         values = np.nan_to_num(decay.values)
         energy = max(float(values.var(axis=1) @ weights) * decay.samples, np.finfo(float).tiny)
-        samples = max(int(decay.usable.sum()) * (decay.samples - 1) - free, 1)
+        # On pads the lines up to a frequency are fitted, and the motion of each pad takes up one number of each.
+        taken = float(counts.max() * len(decay.pads)) if decay.pads else 0.0
+        samples = max(float(counts.sum()) - int(decay.usable.sum()) - free - taken, 1.0)
         errors = dict(zip(MOTIONS, motion.errors.tolist(), strict=True))
         squares, over_noise = float(residual @ weights), float(np.sqrt(residual @ noise**-2 / samples))
         validations[decay.name] = DropValidation(

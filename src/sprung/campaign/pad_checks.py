@@ -37,7 +37,7 @@ def check_pads(parsed: ParsedFile[CampaignFile], problems: Problems) -> None:
         do = f'Add a [[sensor]] with on = "{pads[lacking[0]]}" and quantity = "displacement" or "force"'
         do += ", or state the wheels whose pads moved." if measured else "."
         problems.add(parsed.where("drop", index, "excitation"), found, "a sensor of every pad that moves", do)
-    for index, sensor in zip(parsed.numbered("sensor"), file.sensor, strict=True):
-        if sensor.pad is not None and file.drop and not any(driven):
-            expected, do = 'a drop with excitation = "pads"', "State it for the drops on pads, or remove the sensor."
-            problems.add(parsed.where("sensor", index, "on"), f"'{sensor.on}', but no pad moves", expected, do)
+    still = [sensor.channel for sensor in file.sensor if sensor.pad is not None]
+    if still and file.drop and not any(driven):
+        expected, do = 'a drop with excitation = "pads"', "State it for the drops on pads, or remove these sensors."
+        problems.add(parsed.where("sensor"), f"{', '.join(still)} on pads that do not move", expected, do)

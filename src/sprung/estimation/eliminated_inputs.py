@@ -42,6 +42,17 @@ class EliminatedInputs:
         orthonormal, triangular = np.linalg.qr(self.response.of_inputs * self.scale[:, None])
         return orthonormal, np.swapaxes(orthonormal.conj(), 1, 2), triangular
 
+    def log_determinant(self, weights: Real) -> float:
+        """Return by how much the information on the inputs exceeds that at fixed weights of the channels, shape (channel,).
+
+        As the logarithm of its determinant, summed over real and imaginary parts of all lines.
+        """
+        _, _, triangular = self._factors
+        of_inputs = self.response.of_inputs * np.sqrt(np.where(self.scale > 0, weights, 0.0))[:, None]
+        _, fixed = np.linalg.slogdet(np.swapaxes(of_inputs.conj(), 1, 2) @ of_inputs)
+        own = 2 * np.log(np.abs(np.diagonal(triangular, axis1=1, axis2=2))).sum()
+        return 2 * float(own - fixed.sum())
+
     @cached_property
     def hat(self) -> Complex:
         """What inputs explain of readings, shape (line, channel, channel)."""
@@ -208,6 +219,17 @@ class EliminatedEnds:
         """Numbers that each channel determines of inputs and ends, shape (channel,)."""
         of_inputs = np.sum([np.einsum("lcc->c", block.hat).real for block in self.blocks], axis=0)
         return np.asarray(2 * of_inputs + self._spent_on_ends)
+
+    def restriction(self, weights: Real) -> float:
+        """Return what the eliminated unknowns add to minus twice the log-likelihood, beside that at fixed weights, (channel,).
+
+        The information that the channels have on them, with which noise levels are those of the
+        :term:`restricted maximum likelihood`. Information at fixed weights is taken off: it depends on the parameters of the
+        vehicle, of which the most likely inputs, not their average, tell without bias.
+        """
+        own = self.blocks[0].scale ** 2
+        ratio = np.log(np.where(own > 0, own / weights, 1.0))
+        return sum(block.log_determinant(weights) for block in self.blocks) + float(self._spent_on_ends @ ratio)
 
     @cached_property
     def coupling(self) -> Real:

@@ -137,10 +137,14 @@ class FitResult:
     @cached_property
     def autocorrelation_inflation(self) -> Real:
         """Factor by which autocorrelated residuals inflate variances, shape (channel,); 1 where not significantly."""
-        decays = self.decays
-        # Samples that were interpolated are correlated, but counted for no more than those that were taken.
-        samples = np.sum([decay.usable * decay.samples for decay in decays], axis=0)
-        counted = self.problem.objective.observations.sum(axis=0) / np.maximum(samples, 1)
+        decays, observations = self.decays, self.problem.objective.observations
+        # Samples that were interpolated are correlated, but counted for no more than those that were taken. Of a record on pads
+        # the lines are used up to a frequency, and among these noise is what it is among all.
+        samples = [
+            counts if decay.pads else decay.usable * decay.samples
+            for decay, counts in zip(decays, observations, strict=True)
+        ]
+        counted = observations.sum(axis=0) / np.maximum(np.sum(samples, axis=0), 1)
         rates = [decay.rate for decay in decays]
         return autocorrelation_inflation(self.residuals, rates, counted=counted, least=self.problem.least_variance)
 

@@ -22,6 +22,9 @@ Real = NDArray[np.float64]
 _ENOUGH, _MOST = 150, 4
 """Lines of each record, and records, that are enough to rank vehicles."""
 
+_ROUNDING = 1e-12
+"""Part of the mean square of a channel below which its noise is taken for rounding."""
+
 _LEAST_NOISE = 0.25
 """Part of the noise above all lines that a channel has at least among them. Without a bound, a channel without noise that
 explains the motion of a pad alone, while the others err, would be a solution far from all vehicles."""
@@ -63,28 +66,22 @@ class ForcedObjective:
         return {wheels: PadInputs.of(wheels, self.channels, self.sensors.names) for wheels in driven}
 
     @cached_property
-    def spent(self) -> Real:
-        """Numbers in the lines that are spent on the unknown inputs, shape (drop, channel)."""
-        return np.array([one.spent_on_inputs for one in self.lines])
-
-    @cached_property
     def observations(self) -> Real:
-        """Numbers in the lines by record and channel beyond those that are spent on inputs, shape (drop, channel)."""
-        counts = np.array([one.counts for one in self.lines])
-        return np.asarray(np.maximum(counts - self.spent, np.minimum(counts, 1.0)))
+        """Numbers in the lines by record and channel, shape (drop, channel)."""
+        return np.array([one.counts for one in self.lines])
 
     @cached_property
     def energy(self) -> Real:
-        """Sum of squares of the lines of each channel beyond those that are spent on inputs, SI, shape (channel,)."""
-        counts = np.maximum(np.sum([one.counts for one in self.lines], axis=0), 1.0)
-        whole = np.sum([one.energy for one in self.lines], axis=0)
-        return np.asarray(whole * self.observations.sum(axis=0) / counts)
+        """Sum of squares of the lines of each channel, SI, shape (channel,)."""
+        return np.asarray(np.sum([one.energy for one in self.lines], axis=0))
 
     @cached_property
-    def least_variance(self) -> Real:
-        """Noise variance that a channel has at least, SI, shape (channel,)."""
-        noise = np.min([np.where(one.usable, one.noise, np.inf) for one in self.lines], axis=0)
-        return np.where(np.isfinite(noise), _LEAST_NOISE * noise, 0.0)
+    def noise(self) -> Real:
+        """Noise variance of each channel above all lines, SI, shape (channel,): a first guess that no model is needed for."""
+        used = np.array([one.usable for one in self.lines])
+        mean = np.sum([one.noise for one in self.lines], axis=0) / np.maximum(used.sum(axis=0), 1)
+        least = _ROUNDING * self.energy / np.maximum(self.observations.sum(axis=0), 1.0)
+        return np.asarray(np.where(used.any(axis=0), np.maximum(mean, np.maximum(least, np.finfo(float).tiny)), 1.0))
 
     def at(self, values: Real, weights: Real) -> ForcedAt:
         """Evaluate at parameter values, SI, shape (parameter,), with weights 1/σ² of the channels, shape (channel,)."""
@@ -191,15 +188,16 @@ class ForcedAt:
 
     @cached_property
     def leverage(self) -> Real:
-        """Number of eliminated unknowns that each channel determines beyond those spent on inputs, shape (channel,)."""
-        whole = np.sum([left.leverage for left in self._left], axis=0)
-        return np.asarray(whole - self.objective.spent.sum(axis=0))
+        """Number of eliminated unknowns that each channel determines, shape (channel,)."""
+        return np.asarray(np.sum([left.leverage for left in self._left], axis=0))
 
     @cached_property
     def coupling(self) -> NoiseCoupling:
         """How the noise of channels mixes in their residuals."""
+        noise = self.objective.noise
         expected = np.asarray(np.sum([left.coupling for left in self._left], axis=0))
-        return NoiseCoupling(expected, self.objective.least_variance)
+        restriction = sum(left.restriction(1 / noise) for left in self._left)
+        return NoiseCoupling(expected, _LEAST_NOISE * noise, noise, restriction)
 
     @cached_property
     def gradient(self) -> Real:

@@ -193,16 +193,16 @@ class JointAt:
     @cached_property
     def coupling(self) -> NoiseCoupling:
         """How the noise of channels mixes in their residuals."""
-        expected, least = np.zeros((len(self.weights), len(self.weights))), np.zeros(len(self.weights))
-        for objective, part in zip(self.objective.parts, self.parts, strict=True):
-            coupling = part.coupling
-            if coupling is None:
-                offsets = np.sum(objective.observations > 0, axis=0)
-                expected += np.diag(objective.observations.sum(axis=0) - offsets - part.leverage)
-            else:
-                expected += coupling.expected
-                least = np.maximum(least, coupling.least)
-        return NoiseCoupling(expected, least)
+        free, driven = self.parts
+        found = driven.coupling
+        if found is None:
+            raise RuntimeError("unknown motions of pads couple the noise of channels")
+        observations = self.objective.parts[0].observations
+        spent = np.sum(observations > 0, axis=0) + free.leverage
+        return found._replace(
+            expected=found.expected + np.diag(observations.sum(axis=0) - spent),
+            restriction=found.restriction + float(spent @ np.log(self.weights * found.reference)),
+        )
 
     @cached_property
     def gradient(self) -> Real:

@@ -31,10 +31,16 @@ class NoiseCoupling(NamedTuple):
         Expected residual sums of squares of each channel by what noise of each adds, in units of 1/weight; (channel, channel).
     least
         Noise variance that a channel has at least, SI, shape (channel,): what is faster than all motions shows it.
+    reference
+        Noise variance of each channel with which likelihoods of several models are compared, SI, shape (channel,).
+    restriction
+        What the eliminated unknowns add to minus twice the log-likelihood at the present weights, beside the reference.
     """
 
     expected: Real
     least: Real
+    reference: Real
+    restriction: float
 
 
 class Objective(Protocol):

@@ -42,6 +42,7 @@ _LONGEST_STEP = 1.0  # in logarithms: no parameter changes by more than a factor
 _ROUNDING = 1e-10  # of the cost
 _LARGEST_FALL = 0.25  # factor by which a step may lower a noise variance at the most, where unknowns couple them
 _NOISE_ROUNDS = 2  # after the first, in which noise levels settle that unknowns couple
+_MOST_ROUNDS, _SETTLED = 8, 3e-3  # in which they settle in the end, and relative change from which they have
 
 
 def identifiable_subspace(information: Real) -> Real:
@@ -194,8 +195,22 @@ class EstimationProblem:
         if not np.isfinite(sums).all():
             return np.inf
         residual, _ = self.priors.residuals(iterate.u)
-        of_records = float(self._observations @ np.log(self.noise_variance(sums, at))) + at.penalty
+        if at.coupling is None:
+            of_records = float(self._observations @ np.log(self.noise_variance(sums, at))) + at.penalty
+        else:
+            of_records = self._restricted_cost(at, at.coupling) + at.penalty
         return of_records / self.overdispersion + float(residual @ residual)
+
+    def _restricted_cost(self, at: ObjectiveAt, coupling: NoiseCoupling) -> float:
+        """Return minus twice the :term:`restricted likelihood <restricted maximum likelihood>` of the records.
+
+        At the noise levels that maximise it the residuals are what is expected, and a small error of these does not matter.
+        """
+        used = self._offsets > 0
+        residual = float((at.weights * at.residual_sums.sum(axis=0))[used].sum())
+        expected = float((self._observations - at.leverage)[used].sum())
+        logarithms = -float(self._observations[used] @ np.log(at.weights[used]))
+        return logarithms + residual - expected + coupling.restriction
 
     def gain(self, before: Iterate, after: Iterate) -> float:
         """Return what twice the log-likelihood gains from one point to another one near by.
@@ -350,7 +365,19 @@ class EstimationProblem:
         reached = (
             other is not None and not found.converged and reaches_other(found.point, self.normal_equations(found.point))
         )
-        return other if other is not None and reached else found
+        if other is not None and reached:
+            return other
+        return found._replace(point=replace(found.point, at=self._with_settled_noise(found.point.at)))
+
+    def _with_settled_noise(self, at: ObjectiveAt) -> ObjectiveAt:
+        """Return the likelihood with the noise levels that maximise it, where unknowns couple them."""
+        for _ in range(0 if at.coupling is None else _MOST_ROUNDS):
+            weights = 1 / self.noise_variance(at.residual_sums, at)
+            change = np.abs(np.log(weights / at.weights)).max()
+            at = at.reweighted(weights)
+            if change < _SETTLED:
+                break
+        return at
 
     def conflicts(self, iterate: Iterate, inflation: float) -> dict[str, float]:
         """Test each known quantity of vehicle and loads against everything else.

@@ -1,4 +1,4 @@
-"""Records of a vehicle on pads as lines of their discrete Fourier transforms, and how many of them the inputs use up.
+"""Records of a vehicle on pads as lines of their discrete Fourier transforms.
 
 Scaled by √(2/N), the real and the imaginary part of each line of N samples have the noise of one sample. So a line counts as
 two samples, and noise levels are the same as in the time domain.
@@ -28,17 +28,14 @@ the noise of the channels beforehand."""
 _NYQUIST = 0.8
 """Part of half the sampling rate up to which the filter of a logger leaves a signal as it is."""
 
-_BAND = 24
-"""Lines among which the response changes so little that as many directions as there are inputs hold all of it."""
-
 _LENGTH = 256
 """Lines in a block."""
 
-_LEAST_NOISE = 1e-12
-"""Part of a channel's energy below which its noise is taken for rounding."""
-
 _FEWEST = 50
 """Lines above the others that show a channel's noise."""
+
+_BAND, _EXCITED = 24, 3.0
+"""Lines over which power is averaged, and times that of the noise from which it is more: ten standard errors."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,7 +86,8 @@ class SpectralLines:
         last = int(min(HIGHEST, _NYQUIST * decay.rate / 2) * span)
         whole = np.fft.rfft(values, axis=1).T * np.sqrt(2 / samples)
         lines, above = whole[first : last + 1], whole[last + 1 : int(_NYQUIST * samples / 2)]
-        noise = above if len(above) >= _FEWEST else lines[-_FEWEST:]
+        noise = np.mean(np.abs(above if len(above) >= _FEWEST else lines[-_FEWEST:]) ** 2, axis=0) / 2
+        lines = lines[: _last_excited(lines, noise)]
         spread = np.ptp(values, axis=1)
         ends = np.array([spread / np.sqrt(2 * samples), spread * step * np.sqrt(2 / samples) / 12])
         high_pass = np.array(decay.high_pass) if decay.high_pass else np.zeros(len(values))
@@ -105,7 +103,7 @@ class SpectralLines:
             samples=samples,
             step=step,
             ends=ends,
-            noise=np.mean(np.abs(noise) ** 2, axis=0) / 2,
+            noise=noise,
         )
 
     @cached_property
@@ -151,26 +149,14 @@ class SpectralLines:
         whole[:, self.numbers[-1] + 1 :] = 0
         return np.asarray(np.fft.irfft(whole, self.samples, axis=1))
 
-    @cached_property
-    def spent_on_inputs(self) -> Real:
-        """Numbers in the lines of each channel that are spent on the unknown inputs, shape (channel,).
 
-        As many as there are inputs, times the lines: a channel with little noise tells more of them than others do. Its share
-        follows from the lines alone: in a narrow band all signals are combinations of as many as there are inputs.
-        """
-        inputs, channels = len(self.wheels), int(self.usable.sum())
-        if inputs >= channels:
-            return self.counts
-        energy = self.energy[self.usable] / np.maximum(self.counts[self.usable], 1.0)
-        noise = np.maximum(self.noise[self.usable], _LEAST_NOISE * np.maximum(energy, np.finfo(float).tiny))
-        own = self.values[:, self.usable] / np.sqrt(noise)
-        share = np.zeros(channels)
-        for band in np.array_split(own, max(len(own) // _BAND, 1)):
-            _, _, right = np.linalg.svd(band, full_matrices=False)
-            share += 2 * len(band) * np.sum(np.abs(right[:inputs]) ** 2, axis=0)
-        whole = np.zeros(len(self.usable))
-        whole[self.usable] = share
-        return whole
+def _last_excited(lines: Complex, noise: Real) -> int:
+    """Return the number of lines up to the last that any channel shows: those above are nothing but noise."""
+    power = np.array(
+        [np.mean(np.abs(band) ** 2, axis=0) / 2 for band in np.split(lines, range(_BAND, len(lines), _BAND))]
+    )
+    excited = np.flatnonzero((power > _EXCITED * noise).any(axis=1))
+    return _BAND * (int(excited[-1]) + 1) if excited.size else len(lines)
 
 
 def lines_of(decays: Sequence[FreeDecay]) -> tuple[SpectralLines, ...]:

@@ -126,10 +126,11 @@ def modes(
         return ModesByLoad({RECORDINGS: recorded})
     _check_not_given("arrays and recordings", start=start)
     campaign = resolve_campaign(source, progress)
-    decays = prepare(campaign, progress).decays
+    decays = [decay for decay in prepare(campaign, progress).decays if not decay.pads]
     if not decays:
         problems = Problems()
-        problems.add(campaign.name, "no drop that can be used", "at least one", "Run `sprung check` on the campaign.")
+        expected, do = "at least one, not on pads", "Run `sprung check` on the campaign."
+        problems.add(campaign.name, "no drop that can be used", expected, do)
         problems.raise_if_any()
     by_load = ModesByLoad()
     for load in campaign.loads:

@@ -11,7 +11,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.campaign import Excitation
+from sprung.campaign import DEFAULT_HEIGHT, Excitation
 from sprung.planning.cramer_rao import CramerRaoBound
 from sprung.planning.setup import PlannedDrop, PlannedTest
 from sprung.simulation import DEFAULT_SPEED, USUAL_NOISE
@@ -195,7 +195,7 @@ def _repeats(test: PlannedTest) -> Iterator[Alternative]:
 
 def _drops(test: PlannedTest) -> Iterator[Alternative]:
     done = {frozenset(drop.wheels) for drop in test.drops if drop.load == EMPTY and drop.excitation == "drop"}
-    height = test.drops[0].height
+    height = test.drops[0].height if test.drops else DEFAULT_HEIGHT
     stations = test.setup.vehicle.layout.wheels
     for wheels, name in DROP_LABELS.items():
         if wheels not in done and wheels <= {*stations}:

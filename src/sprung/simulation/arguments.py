@@ -13,7 +13,7 @@ from pydantic import ValidationError
 
 from sprung.campaign import Drop
 from sprung.errors import Problems
-from sprung.units import Quantity
+from sprung.units import SI_UNITS, Quantity
 from sprung.vehicle import (
     FULL,
     PADS,
@@ -58,7 +58,7 @@ def default_sensors(vehicle: Vehicle, *, on_pads: bool = False) -> tuple[Sensor,
         corners.append(Sensor(channel=_channel("body", wheel), on="body", position=(x, side * half, 0.5)))
     wheels = [Sensor(channel=_channel("wheel", wheel), on=wheel) for wheel in vehicle.layout.wheels]
     pads = [
-        Sensor(channel=_channel(name, wheel), on=cast("SensorPlace", pad), quantity=quantity)
+        Sensor(channel=_channel(name, wheel), on=cast("SensorPlace", pad), quantity=quantity, unit=SI_UNITS[quantity])
         for name, quantity in _OF_PADS.items()
         for pad, wheel in PADS.items()
         if on_pads and wheel in vehicle.layout.wheels

@@ -132,6 +132,9 @@ def plan(
         problems=problems,
         sensor_errors=sensors is not None,
     )
+    if any(drop.excitation == "pads" for drop in setup.drops):
+        do = "Leave these drops out; simulate them and identify the vehicle for what they tell."
+        problems.add("plan: drops", 'excitation = "pads"', "drops, pushes or passes", do)
     levels = setup.sensing.noise
     if not (levels > 0).all() and not any("noise" in problem.where for problem in problems):
         do = "Without noise every uncertainty is zero: give the noise of your sensors."

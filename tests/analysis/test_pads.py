@@ -1,0 +1,160 @@
+"""Vehicles on pads through the whole of `identify`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import sprung
+from sprung.campaign import Campaign
+from sprung.errors import InputError
+from sprung.results import Result
+from sprung.simulation import PadMotion, default_sensors
+from sprung.vehicle import TABLE_1_CAR, Sensor, Vehicle
+
+PADS = {"excitation": "pads"}
+QUARTER_CAR = Vehicle(model="quarter", name="quarter", m_s=340.0, m_u=42.0, k_s=21e3, k_t=195e3, c_s=1450.0)
+PITCH_PLANE = Vehicle(
+    model="pitch-plane",
+    name="pitch plane",
+    m_s=650.0,
+    I_yy=980.0,
+    m_uf=40.0,
+    m_ur=36.0,
+    k_sf=19e3,
+    k_sr=23e3,
+    k_tf=190e3,
+    k_tr=185e3,
+    c_sf=1400.0,
+    c_sr=1650.0,
+    a=1.15,
+    b=1.45,
+)
+
+NOISE = {"acceleration": 0.02, "displacement": 5e-5, "force": 8.0}
+"""The force to 0.2 % of a wheel load, the displacement to 0.05 mm."""
+
+SHORT = PadMotion(duration=10.0)
+
+
+def errors_of(result: Result, vehicle: Vehicle) -> dict[str, float]:
+    return {
+        name: np.inf if one.value is None else abs(one.value / vehicle.parameters[name] - 1)
+        for name, one in result.parameters.items()
+        if vehicle.parameters.get(name)
+    }
+
+
+@pytest.mark.parametrize("vehicle", [TABLE_1_CAR, PITCH_PLANE, QUARTER_CAR], ids=lambda one: one.name)
+def test_identify_inverts_simulate_and_nothing_is_weighed(vehicle: Vehicle) -> None:
+    campaign = sprung.simulate(vehicle, drops=[PADS], noise=0, pads=SHORT)
+    result = sprung.identify(campaign, extras=(), tracks="shared")
+    assert max(errors_of(result, vehicle).values()) < 1e-6
+    assert result.verdict.state == "accept"
+    assert result.scale.known
+
+
+def test_half_a_minute_on_pads_determines_every_parameter_to_half_a_percent() -> None:
+    campaign = sprung.simulate(TABLE_1_CAR, drops=[PADS], noise=NOISE, seed=1)
+    result = sprung.identify(campaign)
+    assert result.verdict.state == "accept"
+    assert result.fit.model == ()
+    assert not result.faults
+    assert max(errors_of(result, TABLE_1_CAR).values()) < 5e-3
+    assert all(one.std is not None and one.std < 5e-3 * abs(one.value or 0) for one in result.parameters.values())
+    assert ("select_nonlinear_terms", "no nonlinear term is tried") in [
+        (step.stage, step.what) for step in result.trace
+    ]
+    expected = [NOISE[sensor.quantity] for sensor in campaign.sensors]
+    np.testing.assert_allclose(list(result.fit.noise.values()), expected, rtol=0.15)
+
+
+def test_pads_and_drops_of_one_vehicle_are_identified_together() -> None:
+    """A pad's sensors tell nothing of a drop, and an accelerometer has one noise level in both."""
+    drops: list[Mapping[str, object]] = [PADS, {"wheels": ["fl", "fr"]}, {"excitation": "pads", "wheels": ["fl", "rl"]}]
+    campaign = sprung.simulate(TABLE_1_CAR, drops=drops, noise=NOISE, seed=1, pads=SHORT)
+    result = sprung.identify(campaign, extras=(), tracks="shared")
+    assert result.verdict.state == "accept"
+    assert max(errors_of(result, TABLE_1_CAR).values()) < 5e-3
+    assert len(result.validation) == 3
+    assert all(0.5 < drop.residual < 1.2 for drop in result.validation.values())
+
+
+def test_a_damper_mount_is_found_on_pads() -> None:
+    vehicle = TABLE_1_CAR.with_values(k_df=2.1e5, k_dr=2.6e5)
+    campaign = sprung.simulate(vehicle, drops=[PADS], noise=NOISE, seed=1, pads=PadMotion(duration=20.0))
+    result = sprung.identify(campaign)
+    assert result.fit.model == ("damper-mount",)
+    assert max(errors_of(result, vehicle).values()) < 0.02
+
+
+def test_forces_known_to_one_percent_give_the_scale_to_half_of_that() -> None:
+    """Four sensors whose gains are uncertain by 1 % each."""
+    campaign = sprung.simulate(TABLE_1_CAR, drops=[PADS], noise=NOISE, seed=1, pads=SHORT)
+    sensors = tuple(replace(one, gain_std=0.01) if one.quantity == "force" else one for one in campaign.sensors)
+    result = sprung.identify(replace(campaign, sensors=sensors), extras=(), tracks="shared")
+    mass = result.parameters["m_s"]
+    assert mass.std == pytest.approx(0.005 * 1380, rel=0.2)
+
+
+def without(campaign: Campaign, channels: set[str]) -> Campaign:
+    """Return a campaign in which channels hold nothing."""
+    gone = [sensor.channel in channels for sensor in campaign.sensors]
+    drops = [
+        replace(
+            drop,
+            recording=replace(drop.recording, values=np.where(np.array(gone)[:, None], 0.0, drop.recording.values)),
+        )
+        for drop in campaign.drops
+    ]
+    return replace(campaign, drops=tuple(drops))
+
+
+def test_a_pad_whose_sensors_are_dead_leaves_its_record_out() -> None:
+    campaign = sprung.simulate(TABLE_1_CAR, drops=[PADS], noise=NOISE, seed=1, pads=SHORT)
+    with pytest.raises(InputError, match="neither displacement nor force is known of the pads under fl"):
+        sprung.identify(without(campaign, {"pad_fl", "force_fl"}))
+    result = sprung.identify(without(campaign, {"pad_fl"}), extras=(), tracks="shared")
+    assert max(errors_of(result, TABLE_1_CAR).values()) < 0.01
+
+
+def pad(wheel: str) -> Sensor:
+    return Sensor(channel=f"pad_{wheel}", on=f"pad {wheel}", quantity="displacement", unit="m")  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("sensors", "drops", "message"),
+    [
+        ([], [PADS], "no displacement and no force of the pad under fl, fr, rl, rr"),
+        ([pad("fl"), pad("fr")], [PADS], "no displacement and no force of the pad under rl, rr"),
+        ([pad("fl")], [{}], "pad_fl on pads that do not move"),
+    ],
+)
+def test_statements_of_pads_and_drops_have_to_agree(
+    sensors: list[Sensor], drops: list[dict[str, object]], message: str
+) -> None:
+    with pytest.raises(InputError, match=message):
+        sprung.simulate(TABLE_1_CAR, sensors=[*default_sensors(TABLE_1_CAR), *sensors], drops=drops, pads=SHORT)
+
+
+def test_what_needs_time_stepping_is_refused() -> None:
+    campaign = sprung.simulate(QUARTER_CAR, drops=[PADS], noise=NOISE, seed=1, pads=SHORT)
+    with pytest.raises(InputError, match="extras friction, and drops on pads"):
+        sprung.identify(campaign, extras="friction")
+    with pytest.raises(InputError, match="a linear vehicle on pads that move"):
+        sprung.simulate(TABLE_1_CAR.with_values(F_f=50.0, F_r=50.0), drops=[PADS])
+    with pytest.raises(InputError, match="not on pads"):
+        sprung.modes(campaign)
+    with pytest.raises(InputError, match="drops, pushes or passes"):
+        sprung.plan(QUARTER_CAR, drops=[PADS])
+
+
+def test_impossible_pads_are_named_all_at_once() -> None:
+    with pytest.raises(InputError) as caught:
+        sprung.simulate(
+            QUARTER_CAR, drops=[PADS], pads=PadMotion(amplitude=-1.0, lowest=5.0, highest=2.0, duration=1.0)
+        )
+    assert len(caught.value.problems) == 3
