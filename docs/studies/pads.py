@@ -183,9 +183,9 @@ tyres are recorded ([the campaign file](../campaign.md#pads)). Nothing is weighe
 Each record takes {DURATION:g} s at {RATE:g} Hz. Noise: {NOISE["acceleration"]:g} m/s² of accelerometers on the body over each
 wheel and on each wheel, {1e3 * NOISE["displacement"]:g} mm of the displacement and {NOISE["force"]:g} N of the force of
 each pad, which is 0.2 % of a wheel load. *random*: all pads at once; *sweep*: one pad after the other from 0.5 to 25 Hz;
-*step*: one pad after the other 6 mm up and down again. The complete `sprung.identify` analyses each campaign and selects the model. The
-motion is integrated in the time domain by Gauss-Legendre quadrature, the likelihood is that of [spectral
-lines](../theory.md#pads).
+*step*: one pad after the other 6 mm up and down again. The complete `sprung.identify` analyses each campaign and selects the
+model. The motion is integrated in the time domain by Gauss-Legendre quadrature, the likelihood is that of
+[spectral lines](../theory.md#pads).
 
 ## Result
 
