@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import shutil
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -24,7 +25,7 @@ from sprung.drafting.release_detection import average_pieces, detect_releases
 from sprung.errors import InputError
 from sprung.report import draft_view
 from sprung.simulation import simulate
-from sprung.vehicle import TABLE_1_CAR, Vehicle
+from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, WHEELS, Sensor, Vehicle, Wheel
 
 SOFT, HARD = half_car(), half_car(damping=2.0)
 SOFT_LOADED = half_car(added=60.0)
@@ -315,3 +316,55 @@ def test_pads_that_rest_are_left_out(tmp_path: Path) -> None:
     assert draft.drops[0].excitation == "push"
     assert set(draft.files[0].left_out) == {"pad L", "load cell pad L"}
     assert draft.model == "quarter"
+
+
+def displacement_sensors(kinds: Sequence[str]) -> list[Sensor]:
+    """Sensors of the bodies' corners, of wheels and across suspensions of the paper's car, in mm."""
+    made = []
+    for wheel in WHEELS:
+        places: dict[str, dict[str, Any]] = {
+            "body": {
+                "on": "body",
+                "position": (0.0 if wheel[0] == "f" else -2.76, 0.7 if wheel[1] == "l" else -0.7, 0.5),
+            },
+            "wheel": {"on": wheel},
+            "travel": {"on": "body", "relative_to": wheel},
+        }
+        made += [
+            Sensor(channel=f"disp {kind} {wheel}", quantity="displacement", unit="mm", **places[kind]) for kind in kinds
+        ]
+    return made
+
+
+@pytest.mark.parametrize("kinds", [("body", "wheel"), ("travel",)])
+@pytest.mark.parametrize("excitation", ["drop", "push", "pass"])
+@pytest.mark.parametrize("wheels", [WHEELS, ("fl", "fr"), ("fl", "rl")])
+def test_displacements_show_what_excited_a_vehicle(
+    tmp_path: Path, kinds: tuple[str, ...], excitation: str, wheels: tuple[Wheel, ...]
+) -> None:
+    drop = {"wheels": list(wheels), "excitation": excitation}
+    campaign = simulate(
+        TABLE_1_CAR, sensors=displacement_sensors(kinds), drops=[drop], noise=1e-4, duration=6.0, seed=1
+    )
+    (recording,) = campaign.recordings
+    readings = {f"{name} [mm]": 1e3 * own for name, own in zip(recording.channels, recording.values, strict=True)}
+    write_table(tmp_path / "one.csv", np.array(list(readings.values())), recording.rate, list(readings))
+    draft = sprung.draft(tmp_path)
+    assert [found.excitation for found in draft.drops] == [excitation]
+    assert draft.model == "full"
+    if excitation == "drop":
+        assert draft.drops[0].wheels == wheels
+    else:  # how far the vehicle swings shows them only roughly
+        assert set(draft.drops[0].wheels) >= set(wheels)
+
+
+def test_the_name_knows_better_which_wheels_were_pushed(tmp_path: Path) -> None:
+    drop = {"wheels": ["fl", "fr"], "excitation": "push"}
+    campaign = simulate(SCHOOL_BUS, sensors=displacement_sensors(["travel"]), drops=[drop], noise=1e-4, seed=1)
+    (recording,) = campaign.recordings
+    names = [f"{name} [mm]" for name in recording.channels]
+    for name, start in (("one", 0.0), ("push front", 1.0)):
+        write_table(tmp_path / f"{name}.csv", 1e3 * recording.values, recording.rate, names, start)
+    plain, named = sprung.draft(tmp_path).drops
+    assert "wheels by how far the vehicle swings" in plain.notes
+    assert (named.wheels, "wheels by the name of the recording" in named.notes) == (("fl", "fr"), True)

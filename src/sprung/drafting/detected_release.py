@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,6 +36,8 @@ class DetectedRelease:
         Reading at rest before the release less that after the vibration, shape (channel,), m.
     swing
         Largest distance from the level after the vibration, shape (channel,), m.
+    onset
+        Largest speed directly after the release, with the sign of the first motion, shape (channel,), m/s.
     """
 
     begin: float
@@ -46,17 +48,15 @@ class DetectedRelease:
     channels: tuple[str, ...]
     fall: Real
     swing: Real
+    onset: Real
 
-    def of(self, names: Sequence[str]) -> tuple[Real, Real]:
-        """Return fall and swing of some channels, in m; 0 for one that the recording does not have."""
+    def of(self, names: Sequence[str]) -> tuple[Real, Real, Real]:
+        """Return fall, swing and onset of some channels; 0 for one that the recording does not have."""
         index = [self.channels.index(name) if name in self.channels else -1 for name in names]
-        return np.append(self.fall, 0.0)[index], np.append(self.swing, 0.0)[index]
+        fall, swing, onset = (np.append(each, 0.0)[index] for each in (self.fall, self.swing, self.onset))
+        return fall, swing, onset
 
     def as_drop(self) -> DetectedDrop:
         """Return the same times as a drop without features of accelerations; nothing flies, so it has landed at the release."""
         features = DropFeatures(*(np.zeros(0) for _ in range(7)))
         return DetectedDrop(self.begin, self.release, self.release, self.faded, self.end, self.why_end, features)
-
-    def shifted(self, by: float) -> DetectedRelease:
-        """Return the release with its times later by so many s."""
-        return replace(self, begin=self.begin + by, release=self.release + by, faded=self.faded + by, end=self.end + by)

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
 
-from sprung.campaign import drop_kind
+from sprung.campaign import Excitation, drop_kind
 from sprung.drafting.detected_drop import DetectedDrop
 from sprung.drafting.detection import RejectedEvent
 from sprung.units import Quantity
@@ -97,7 +97,7 @@ class DraftDrop:
     found: DetectedDrop
     notes: tuple[str, ...]
     proposed: bool = False
-    excitation: Literal["drop", "push", "pads"] | None = "drop"
+    excitation: Excitation | None = "drop"
 
     @property
     def kind(self) -> str | None:

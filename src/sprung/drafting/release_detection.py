@@ -44,6 +44,12 @@ _LAST = 0.3
 _FADED = 0.02
 """Part of the largest distance from the last level below which a vibration has faded."""
 
+_ONSET = 0.12
+"""s after the release in which a wheel falls off a usual block."""
+
+_BEGUN = 0.1
+"""Part of the largest distance from the last level that a channel has moved when the direction of its first motion shows."""
+
 _SPARED = 0.05
 """s that are left out before the next motion."""
 
@@ -192,8 +198,8 @@ def _end_of_motion(values: Real, rests: NDArray[np.bool_], first: int, step: flo
 
 def _classify(
     averages: Averages, noise: Real, at: tuple[int, int, int, int]
-) -> tuple[float, float, float, float, Real, Real] | str | None:
-    """Return times, falls and swings of a release, or the reason why a motion is none; None for a slight one."""
+) -> tuple[float, float, float, float, Real, Real, Real] | str | None:
+    """Return times, falls, swings and onsets of a release, or the reason why a motion is none; None for a slight one."""
     begin, first, settled, last = at
     values, step = averages.values, averages.step
     held = np.median(values[:, begin:first], axis=1, keepdims=True)
@@ -218,4 +224,10 @@ def _classify(
     )
     faded = first + int(np.flatnonzero(away)[-1]) + 1
     times = [averages.start + each * step for each in (begin, first, min(faded, last), last)]
-    return times[0], times[1], times[2], times[3], fall, size
+    early = values[:, first - 1 : first + round(_ONSET / step)] - held
+    rates = np.abs(np.diff(early, axis=1)).max(axis=1) / step
+    whole = values[:, first - 1 : last] - held
+    moves = np.abs(whole) > np.maximum(_BEGUN * size, _NOISE * noise[:, 0])[:, None]
+    signs = np.sign(np.take_along_axis(whole, moves.argmax(axis=1)[:, None], axis=1)[:, 0])
+    onset = np.where(moves.any(axis=1), signs * rates, 0.0)
+    return times[0], times[1], times[2], times[3], fall, size, onset

@@ -49,9 +49,7 @@ def _on_pads(recording: ExaminedRecording, stations: Mapping[str, Wheel | None],
     file = recording.file
     over = {stations[channel] for channel in recording.pads if channel in stations}
     wheels = () if None in over else tuple(wheel for wheel in wheels_in_part(WHEELS, model) if wheel in over)
-    whole = DetectedRelease(
-        file.start, file.start, file.end, file.end, "the recording ends", (), np.zeros(0), np.zeros(0)
-    )
+    whole = DetectedRelease(file.start, file.start, file.end, file.end, "the recording ends", (), *np.zeros((3, 0)))
     load = load_named(file.name)
     notes = (f"{', '.join(recording.pads)} move: driven by pads", *([TAKEN_EMPTY] if load is None else []))
     return DraftDrop((file.name,), None, load or "empty", wheels, whole.as_drop(), notes, excitation="pads")
@@ -65,13 +63,13 @@ def _drop(
     model: VehicleModel,
 ) -> DraftDrop:
     name = recording.file.name
-    excitation, moved, why = classify_excitation(release, sensors, name)
+    found = classify_excitation(release, sensors, name)
     notes = [
-        f"at rest for {release.release - release.begin:.2f} s, released at {release.release:.2f} s",
-        why,
+        f"at rest for {release.release - release.begin:.2f} s, moves from {release.release:.2f} s on",
+        found.why,
         f"usable until {release.end:.2f} s, when {release.why_end}",
     ]
-    wheels, how = wheels_of_excitation(moved, stations, wheels_named_anywhere(name), model)
+    wheels, how = wheels_of_excitation(found, stations, wheels_named_anywhere(name), model)
     alone = len(recording.releases) == 1
     load = load_named(name)
     if load is None and alone:
@@ -81,7 +79,7 @@ def _drop(
     # The release comes late enough, and the window whole, where the recording is short and holds nothing else.
     whole = alone and recording.file.end - recording.file.start <= SHORT and not _is_disturbed(release)
     window = None if whole else (release.begin, release.end)
-    return DraftDrop((name,), window, load, wheels, release.as_drop(), tuple(notes), excitation=excitation)
+    return DraftDrop((name,), window, load, wheels, release.as_drop(), tuple(notes), excitation=found.excitation)
 
 
 def _is_disturbed(release: DetectedRelease) -> bool:

@@ -34,6 +34,7 @@ _LOAD = placeholder("empty, or the name of the [[load]] that was on the vehicle"
 _WHEELS = placeholder("[{wheels}] each in quotes: those that were dropped")
 _MOVED = {
     "push": placeholder("[{wheels}] each in quotes: those over which the body was held before it was let go"),
+    "pass": placeholder("[{wheels}] each in quotes: those that ran over the bump"),
     "pads": placeholder("[{wheels}] each in quotes: those whose pads moved"),
 }
 _PLACE = placeholder(
@@ -195,6 +196,8 @@ def drop_section(drop: DraftDrop, draft: DraftCampaign) -> str:
     lines.append(_list("wheels", drop.wheels) if drop.wheels else _key("wheels", which))
     if drop.excitation == "drop":
         lines.append("# height = 0.05                      # of the blocks, m; optional")
+    if drop.excitation == "pass":
+        lines.append("# speed = 5.0                        # m/s; optional")
     return "\n".join(lines) + "\n"
 
 
