@@ -105,9 +105,9 @@ def test_a_second_number_is_a_load_and_no_mass(drafts: dict[str | None, DraftCam
 
 
 def test_a_copy_is_named_and_left_out(drafts: dict[str | None, DraftCampaign]) -> None:
-    for draft in drafts.values():
-        assert draft.copies == {"try.csv": "Centre/Damped/run 1_2, damped_300.csv"}
-        assert "# Left out: try.csv: identical to Centre/Damped/run 1_2, damped_300.csv." in draft.text
+    copy, original = "try.csv", "Centre/Damped/run 1_2, damped_300.csv"
+    assert [draft.copies for draft in drafts.values()] == [{}, {copy: original}, {}]
+    assert f"# Left out: {copy}: identical to {original}." in drafts["damped_300"].text
 
 
 def test_the_recordings_of_a_draft_with_gaps_can_be_checked(rig: Path, tmp_path: Path) -> None:
@@ -368,3 +368,26 @@ def test_the_name_knows_better_which_wheels_were_pushed(tmp_path: Path) -> None:
     plain, named = sprung.draft(tmp_path).drops
     assert "wheels by how far the vehicle swings" in plain.notes
     assert (named.wheels, "wheels by the name of the recording" in named.notes) == (("fl", "fr"), True)
+
+
+def test_a_push_of_which_only_accelerations_tell_is_one_by_its_name(tmp_path: Path) -> None:
+    drops: list[dict[str, Any]] = [{"wheels": ["fl", "fr"], "excitation": "push"}, {"wheels": list(WHEELS)}]
+    campaign = simulate(TABLE_1_CAR, drops=drops, noise=0.02, seed=1)
+    names = [sensor.channel for sensor in campaign.sensors]
+    for name, recording in zip(("push front", "drop"), campaign.recordings, strict=True):
+        write_table(tmp_path / f"{name}.csv", recording.values, recording.rate, names)
+    draft = sprung.draft(tmp_path)
+    assert [(drop.excitation, drop.wheels) for drop in draft.drops] == [("drop", WHEELS), ("push", ("fl", "fr"))]
+    assert [sensor.on for sensor in draft.sensors] == ["body"] * 4 + list(WHEELS)
+    (tmp_path / "drop.csv").unlink()
+    alone = sprung.draft(tmp_path)
+    assert [drop.excitation for drop in alone.drops] == ["push"]
+    assert [sensor.on for sensor in alone.sensors] == ["body"] * 4 + list(WHEELS)
+
+
+def test_copies_of_what_cannot_be_read_are_not_read(tmp_path: Path) -> None:
+    coordinates = let_go(SOFT, lifted(SOFT, 900.0, 0.0).tolist())
+    for name in ("a.txt", "b.txt"):
+        (tmp_path / name).write_text("It rained.\n")
+    draft = drafted(tmp_path, {"body L [mm]": coordinates[0], "wheel L [mm]": coordinates[3]})
+    assert (set(draft.unreadable), draft.copies) == ({"a.txt", "b.txt"}, {})

@@ -137,7 +137,7 @@ def _campaign(
         files=files,
         unreadable=contents.unreadable,
         model=model,
-        copies=contents.copies,
+        copies={name: original for name, original in contents.copies.items() if original in place},
         setting=setting,
         output=output,
     )

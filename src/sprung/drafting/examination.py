@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -21,6 +21,7 @@ from sprung.drafting.channel_survey import (
 from sprung.drafting.detected_drop import DetectedDrop, is_on_wheel
 from sprung.drafting.detected_release import DetectedRelease
 from sprung.drafting.detection import Detection, RejectedEvent, detect_drops
+from sprung.drafting.excitation_names import excitation_named
 from sprung.drafting.other_channel import OtherChannel
 from sprung.drafting.pad_motion import moving_pads
 from sprung.drafting.quantity_names import is_pad_named
@@ -62,6 +63,8 @@ class ExaminedRecording:
         What its displacements show, where its accelerations show no drop.
     pads
         Its channels of pads that move.
+    driven
+        A push or a pass over a bump by its name, where its channels show no release: only accelerations tell of it.
     """
 
     file: DraftFile
@@ -72,6 +75,12 @@ class ExaminedRecording:
     others: tuple[OtherChannel, ...] = ()
     releases: tuple[DetectedRelease, ...] = ()
     pads: tuple[str, ...] = ()
+    driven: Literal["push", "pass"] | None = None
+
+    @property
+    def shows_excitation(self) -> bool:
+        """Whether it is a drop, another release, one on pads, or a push or a pass by its name."""
+        return bool(self.drops or self.releases or self.pads or self.driven)
 
 
 def examine_recording(folder: Path, name: str, progress: Callable[[float], None]) -> ExaminedRecording:
@@ -112,10 +121,14 @@ def examine_recording(folder: Path, name: str, progress: Callable[[float], None]
         first, last = (int((time - seen.start) * seen.rate) for time in (drop.release, drop.end))
         for channel, size in detect_full_scales(table, seen, first, last).items():
             scales[channel] = max(size, scales.get(channel, 0.0))
-    number = len(drops) + len(releases) + bool(pads)
-    rejected = () if releases or pads else (*found.rejected, *motions)
+    named = excitation_named(name) if seen.channels and not (drops or releases or pads) else None
+    driven = None if named == "drop" else named
+    number = len(drops) + len(releases) + bool(pads) + bool(driven)
+    rejected = () if releases or pads or driven else (*found.rejected, *motions)
     file = DraftFile(name, seen.rate, seen.start, seen.end, number, rejected, found.events, seen.left_out)
-    return ExaminedRecording(file, seen.channels, drops, scales, others=seen.others, releases=releases, pads=pads)
+    return ExaminedRecording(
+        file, seen.channels, drops, scales, others=seen.others, releases=releases, pads=pads, driven=driven
+    )
 
 
 def _require_channels(name: str, seen: ChannelSurvey) -> None:

@@ -89,6 +89,8 @@ def examine_folder(
     joined = join_single_channel_loggers(recordings, folder)
     if not shows_drops(joined):
         raise InputError([*_no_drops(joined), *(problem for problems in unreadable.values() for problem in problems)])
+    unreadable |= {name: unreadable[original] for name, original in copies.items() if original in unreadable}
+    copies = {name: original for name, original in copies.items() if name not in unreadable}
     return ExaminedFolder(folder, tuple(recordings), joined, unreadable, copies, conditions)
 
 
@@ -115,7 +117,7 @@ def _examine_files(
 
 def shows_drops(recordings: Sequence[ExaminedRecording]) -> bool:
     """Return whether any of the recordings shows a drop, another release, or pads that move."""
-    return any(recording.drops or recording.releases or recording.pads for recording in recordings)
+    return any(recording.shows_excitation for recording in recordings)
 
 
 def _require_no_campaign(folder: Path, overwrite: bool) -> None:

@@ -8,18 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 
 from sprung.drafting.detected_release import DetectedRelease
+from sprung.drafting.excitation_names import UnpaddedExcitation, excitation_named
 from sprung.drafting.layout_names import wheels_in_part
-from sprung.drafting.names import tokens
 from sprung.drafting.records import DraftSensor
 from sprung.vehicle import WHEELS, VehicleModel, Wheel
-
-Excitation = Literal["drop", "push", "pass"]
-"""What excites a vehicle without pads."""
 
 _SHARE = 0.5
 """Part of the largest fall from which a channel falls too, and part of the body's fall from which a wheel falls off a block."""
@@ -32,14 +28,6 @@ _BLOCK = 0.01
 
 _FAST = 0.3
 """m/s at which a suspension begins to move if a wheel falls off a block, 1 m/s, or meets a bump, and not by hand, 0.1 m/s."""
-
-_NAMED: Mapping[Excitation, frozenset[str]] = {
-    "push": frozenset(
-        ("push", "pushed", "pull", "pulled", "quick", "snap", "gedrückt", "gezogen", "anstossen", "wippen", "loslassen")
-    ),
-    "drop": frozenset(("drop", "dropped", "block", "blocks", "fall", "abwurf", "fallversuch", "klotz", "klötze")),
-    "pass": frozenset(("pass", "bump", "hump", "cleat", "schwelle", "überfahrt", "ueberfahrt")),
-}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -58,7 +46,7 @@ class ClassifiedExcitation:
         Whether the wheels follow only from how far the vehicle swings, so that the name of a recording knows them better.
     """
 
-    excitation: Excitation | None
+    excitation: UnpaddedExcitation | None
     moved: tuple[DraftSensor, ...]
     why: str
     is_rough: bool = False
@@ -93,11 +81,10 @@ def classify_excitation(release: DetectedRelease, sensors: Sequence[DraftSensor]
         found = _classify_at_rest(body, wheel) if body.sensors else _classify_by_onset(travel)
     if found is not None:
         return found
-    words = tokens(path)
-    named = [kind for kind, names in _NAMED.items() if any(word in names for word in words)]
+    named = excitation_named(path)
     moved = next((motion.moved for motion in (body, wheel) if motion.is_held), ())
-    if len(named) == 1:
-        return ClassifiedExcitation(named[0], moved, f"{named[0]} by the name of the recording")
+    if named is not None:
+        return ClassifiedExcitation(named, moved, f"{named} by the name of the recording")
     return ClassifiedExcitation(None, moved, "what excited the vehicle does not show")
 
 

@@ -36,7 +36,7 @@ def name_sensors(recordings: Sequence[ExaminedRecording], placed: Collection[str
     tuple of DraftSensor
         Their wheel stations are open.
     """
-    used = [recording for recording in recordings if recording.drops or recording.releases or recording.pads]
+    used = [recording for recording in recordings if recording.shows_excitation]
     channels: list[Channel | OtherChannel] = []
     for recording in used:
         channels += recording.channels

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
+from sprung.campaign import Excitation
 from sprung.drafting.combination import SHORT, TAKEN_EMPTY
 from sprung.drafting.detected_release import DetectedRelease
 from sprung.drafting.examination import ExaminedRecording
@@ -40,19 +41,32 @@ def release_drops(
     for recording in recordings:
         if recording.pads:
             yield _on_pads(recording, stations, model)
+        if recording.driven:
+            yield _by_name(recording, recording.driven, model)
         for release in recording.releases:
             yield _drop(recording, release, sensors, stations, model)
 
 
 def _on_pads(recording: ExaminedRecording, stations: Mapping[str, Wheel | None], model: VehicleModel) -> DraftDrop:
-    """Return the whole recording as a drop on pads."""
-    file = recording.file
     over = {stations[channel] for channel in recording.pads if channel in stations}
     wheels = () if None in over else tuple(wheel for wheel in wheels_in_part(WHEELS, model) if wheel in over)
+    return _whole_recording(recording, "pads", wheels, f"{', '.join(recording.pads)} move: driven by pads")
+
+
+def _by_name(recording: ExaminedRecording, excitation: Excitation, model: VehicleModel) -> DraftDrop:
+    wheels = wheels_in_part(wheels_named_anywhere(recording.file.name), model)
+    return _whole_recording(recording, excitation, wheels, f"a {excitation} by the name of the recording")
+
+
+def _whole_recording(
+    recording: ExaminedRecording, excitation: Excitation, wheels: tuple[Wheel, ...], why: str
+) -> DraftDrop:
+    """Return a recording of which no part is told from the others."""
+    file = recording.file
     whole = DetectedRelease(file.start, file.start, file.end, file.end, "the recording ends", (), *np.zeros((3, 0)))
     load = load_named(file.name)
-    notes = (f"{', '.join(recording.pads)} move: driven by pads", *([TAKEN_EMPTY] if load is None else []))
-    return DraftDrop((file.name,), None, load or "empty", wheels, whole.as_drop(), notes, excitation="pads")
+    notes = (why, *([TAKEN_EMPTY] if load is None else []))
+    return DraftDrop((file.name,), None, load or "empty", wheels, whole.as_drop(), notes, excitation=excitation)
 
 
 def _drop(
