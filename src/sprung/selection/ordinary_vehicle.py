@@ -14,6 +14,7 @@ from sprung.selection.search import ModelSearch
 from sprung.selection.starts import start_values
 from sprung.selection.structure import ModelStructure
 from sprung.selection.terms import TERMS
+from sprung.uncertainty import KnownValue
 
 _SPREADS: Mapping[str, float] = {
     "m_s": 1.15,
@@ -133,8 +134,15 @@ def fit_from_ordinary_vehicle(search: ModelSearch, structure: ModelStructure) ->
     Returns
     -------
     ModelSearch
+
+    Notes
+    -----
+    The wheels first keep the masses of the ordinary vehicle: far from the recordings a fit gains most by shifting mass between
+    body and wheels, and does not come back.
     """
     values, _ = ordinary_vehicle(structure)
     models, sensors, known = structure.linear_models, structure.sensors, structure.known
-    fit = fit_linear(search.decays, models, sensors, known, start=values, enough=NEAR, most=ITERATIONS)
+    wheels = {name: KnownValue(values[name]) for name in structure.names if name.startswith("m_u") and name not in known}
+    held = fit_linear(search.decays, models, sensors, {**known, **wheels}, start=values, enough=NEAR, most=ITERATIONS)
+    fit = fit_linear(search.decays, models, sensors, known, start=held.parameters, enough=NEAR, most=ITERATIONS)
     return replace(search, structure=structure, fit=fit.after(search.fit))
