@@ -139,6 +139,6 @@ def test_what_fails_is_an_outcome() -> None:
 def test_a_fit_far_from_the_recordings_does_not_shift_mass_to_the_wheels() -> None:
     """From an ordinary vehicle that bends it went to wheels of 300 kg, and everything after that failed."""
     ((campaign, truth),) = record([draw_test("bending", 4)])
-    outcome = examine(campaign, truth, LIMIT)
+    outcome = examine(campaign, truth, 300.0)
     assert (outcome.verdict, outcome.model, outcome.faults) == ("accept", ("bending",), ())
     assert outcome.worst[0] < 0.02
