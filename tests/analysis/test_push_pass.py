@@ -53,14 +53,14 @@ def test_without_noise_identification_returns_what_was_simulated(
 def test_the_fitted_vehicle_shows_when_its_motion_becomes_free(
     excitation: str, push: str, bump: str, noise: float
 ) -> None:
-    """The force of a hand fades within some hundredths of a second; a rope and a bump end at once."""
+    """A rope and a bump end at once; the force of a hand fades like a sine: F² adds up to what is seen as σ² does, in t³."""
     campaign = simulated(TABLE_1_CAR, excitation, push, bump, noise)
     run = Analysis.start(campaign, AnalysisOptions(), STAGES[:3]).run()
     acting = Acting(Push(shape=push), Bump(shape=bump))  # type: ignore[arg-type]
     for decay, drop in zip(run.decays, campaign.drops, strict=True):
         free = 0.4 + acting.motion(TABLE_1_CAR, EMPTY, drop, 3.2).decay_start
-        fades = 0.04 if (excitation, push) == ("push", "hand") else 0.003
-        assert free - fades / 4 <= decay.start <= free + fades
+        fades = 0.02 * (noise / 0.02) ** (2 / 3) if (excitation, push) == ("push", "hand") else 0.003
+        assert free - fades <= decay.start <= free + fades
 
 
 @pytest.mark.parametrize(("excitation", "push", "bump"), CASES)
@@ -88,3 +88,51 @@ def test_a_campaign_may_mix_drops_pushes_and_passes() -> None:
         assert not result.faults
         for name, value in TABLE_1_CAR.parameters.items():
             assert result.parameters[name].value == pytest.approx(value, rel=tolerance), name
+
+
+def test_a_push_by_hand_tells_the_body_and_not_the_wheels() -> None:
+    """Fifteen pushes, both axles weighed, 1 mg of noise: the body to 2 %, the wheels honestly less, and nothing is guessed."""
+    car = TABLE_1_CAR
+    front = car.m_s * car.b / car.wheelbase + 2 * car.m_uf
+    axles = {"front_axle_mass": front, "rear_axle_mass": car.total_mass - front}
+    result = sprung.identify(
+        sprung.simulate(
+            car,
+            drops=[{"excitation": "push", "wheels": list(one)} for one in EVERY_WAY * 3],
+            known={name: {"value": value, "std": 1.0} for name, value in axles.items()},
+            noise=0.01,
+            seed=4,
+        )
+    )
+    assert not result.faults
+    assert not result.fit.model
+    for name, truth in car.parameters.items():
+        found = result.parameters[name]
+        if name in ("m_uf", "m_ur", "k_tf", "k_tr"):
+            assert found.value is None or abs(found.value - truth) < 4 * (found.std or 0.0)
+        else:
+            assert found.value == pytest.approx(truth, rel=0.02), name
+    wheels = [result.parameters[name] for name in ("m_uf", "m_ur")]
+    assert all(one.value is None or (one.std or 0.0) > 0.02 * one.value for one in wheels)
+
+
+@pytest.mark.long
+def test_dry_friction_is_found_behind_a_bump() -> None:
+    """The linear model, with which the beginning is looked for, has errors then."""
+    car = TABLE_1_CAR.with_values(F_f=40.0, s_f=2e5, F_r=35.0, s_r=2e5)
+    result = sprung.identify(simulated(car, "pass", "hand", "half-sine", 0.02, seed=5))
+    assert result.verdict.state == "accept"
+    assert not result.faults
+    assert result.fit.model == ("friction",)
+    for name, value in car.parameters.items():
+        found = result.parameters[name]
+        assert found.value is not None
+        assert abs(found.value - value) < 4 * (found.std or 0.0)
+
+
+def test_damper_mounts_are_found_behind_a_bump() -> None:
+    car = TABLE_1_CAR.with_values(k_df=2.4e5, k_dr=2.6e5)
+    result = sprung.identify(simulated(car, "pass", "hand", "half-sine", 0.02, seed=5))
+    assert result.verdict.state == "accept"
+    assert result.fit.model == ("damper-mount",)
+    assert result.parameters["k_df"].value == pytest.approx(2.4e5, rel=0.05)

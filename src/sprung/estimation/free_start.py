@@ -21,7 +21,7 @@ from sprung.preprocess import FreeDecay
 Real = NDArray[np.float64]
 
 _ALLOWED = 1.25
-"""Cost of each value that is allowed, where that of noise is 1: a model with errors leaves a little more, too."""
+"""Cost of each value that is allowed, where that of noise is 1."""
 
 _CLEAR = 60.0
 """Excess of the cost from which a force acts. Noise has such a run with a probability of exp(-0.2 excess) at a start."""
@@ -29,14 +29,18 @@ _CLEAR = 60.0
 _TWICE_AS_FAR = 8.0
 """By which the excess grows where it is twice as far from the end of a force that ends like a half sine: F² adds up as t³."""
 
+_MODEL_ERROR = 0.2
+"""Variance beyond the sensors' noise at rest, as a part of it, from which the model has errors: 0.14 is the standard error of
+the variance of 100 samples."""
+
+_FAR, _LONGEST = 0.05, 1.0
+"""Step of a coordinate, a logarithm mostly, beyond which no quadratic model of the likelihood is relied on; and at the most."""
+
 _ROUNDING = 1e-12
 """Part of the squares of the records that rounding makes of a residual sum of squares."""
 
-_LATER = 0.5
-"""s within the decay from where on the test begins: a part of what is fitted may not be free."""
-
-_LONGEST_SHARE = 0.5
-"""Part of a decay within which it does at the most."""
+_LATER = 0.1
+"""s after the start that the recording alone shows from where on the test begins."""
 
 _STEP = 0.01
 """s between the starts that are compared at first."""
@@ -58,13 +62,14 @@ def find_free_start(fit: FitResult, drop: int) -> int:
     Returns
     -------
     int
-        Samples by which its decay may start later, or where negative earlier.
+        Samples by which its decay may start later, though not later than the recording alone shows, or where negative earlier.
     """
     decay = fit.decays[drop]
     costs = _Costs(fit, drop)
-    clear = _CLEAR + costs.rounding
+    clear = _CLEAR * costs.overdispersion + costs.rounding
     every = max(round(_STEP * decay.rate), 1)
-    last = min(round(_LATER * decay.rate), int(_LONGEST_SHARE * decay.samples))
+    shown = 0 if decay.events.start is None else max(round((decay.events.start - decay.start) * decay.rate), 0)
+    last = shown + min(round(_LATER * decay.rate), (decay.samples - shown) // 2)
     earliest = -int(decay.earlier.shape[1])
     found: dict[int, float] = {}
     coarse = [*range(last, earliest, -every), earliest]
@@ -87,7 +92,7 @@ def find_free_start(fit: FitResult, drop: int) -> int:
         return earliest
     near = _crossing(costs, detected, every, lowest + clear)
     further = _crossing(costs, far, every, lowest + _TWICE_AS_FAR * clear) if far != earliest else earliest
-    return min(near + max(near - further, 1), last)
+    return min(near + max(near - further, 1), shown)
 
 
 def _crossing(costs: _Costs, earlier: int, every: int, level: float) -> int:
@@ -103,7 +108,11 @@ def _crossing(costs: _Costs, earlier: int, every: int, level: float) -> int:
 
 
 class _Costs:
-    """The cost of other starts of one decay, the parameters being as uncertain as the other drops leave them."""
+    """The cost of other starts of one decay, the parameters being as uncertain as the other drops leave them.
+
+    A model with errors leaves more where the motion is larger: what it leaves now beside the noise at rest, as a part of the
+    motion, is allowed for.
+    """
 
     def __init__(self, fit: FitResult, drop: int) -> None:
         self._fit, self._decay = fit, fit.decays[drop]
@@ -112,12 +121,27 @@ class _Costs:
         whole, slope, _ = problem.system(iterate)
         gradients, informations = problem.by_drop(iterate)
         self._gradient, self._information = slope - gradients[drop], whole - informations[drop]
+        record = np.nan_to_num(np.concatenate([self._decay.earlier, self._decay.values], axis=1))
+        self._squares = (record - record[:, self._decay.earlier.shape[1] :].mean(axis=1, keepdims=True)) ** 2
+        motion = problem.objective.energy / np.maximum(problem.objective.observations.sum(axis=0), 1.0)
+        at_rest = _variance_at_rest(fit)
+        self._errs = fit.noise**2 > (1 + _MODEL_ERROR) * at_rest
+        at_rest = np.where(self._errs, at_rest, fit.noise**2)
+        error = (fit.noise**2 - at_rest) / np.maximum(motion, np.finfo(float).tiny)
+        expected = (at_rest[:, None] + error[:, None] * self._squares) * self._weights[:, None]
+        used = np.asarray(self._decay.usable, dtype=float)
+        # From each sample on.
+        self._expected = np.cumsum((used @ expected)[::-1])[::-1]
 
     @property
     def rounding(self) -> float:
         """What rounding makes of the cost."""
-        whole = np.nan_to_num(np.concatenate([self._decay.earlier, self._decay.values], axis=1))
-        return _ROUNDING * float(((whole - whole.mean(axis=1, keepdims=True)) ** 2).sum(axis=1) @ self._weights)
+        return _ROUNDING * float(self._squares.sum(axis=1) @ self._weights)
+
+    @property
+    def overdispersion(self) -> float:
+        """Of a model with errors: what it leaves is correlated, so that fewer values count."""
+        return float(np.max(self._fit.autocorrelation_inflation[self._errs], initial=1.0))
 
     def excess(self, shifts: Sequence[int]) -> dict[int, float]:
         """Return the cost of starts, less what is allowed for the samples; up to a constant."""
@@ -133,8 +157,28 @@ class _Costs:
         costs = {}
         for row, shift in enumerate(shifts):
             gradient, information = self._gradient + gradients[row], self._information + informations[row]
-            _, gain = identifiable_equations(information, gradient, null_space).step()
-            counted, cost = float(objective.observations[row].sum()), float(sums[row] @ self._weights)
+            move, gain = identifiable_equations(information, gradient, null_space).step(longest=_LONGEST)
+            cost = float(sums[row] @ self._weights)
             # Without noise the gain is a difference of large numbers, and no cost is less than nothing.
-            costs[shift] = max(cost - gain, 0.0) - _ALLOWED * counted
+            least = max(cost - gain, 0.0)
+            if np.abs(move).max(initial=0.0) > _FAR:
+                least = min(max(self._cost_after(decays[row], move, null_space), least), cost)
+            costs[shift] = least - _ALLOWED * float(self._expected[decay.earlier.shape[1] + shift])
         return costs
+
+    def _cost_after(self, decay: FreeDecay, move: Real, null_space: Real) -> float:
+        """Return the cost of a decay and of what the other drops lose after a step of the coordinates."""
+        problem, iterate = self._fit.problem, self._fit.iterate
+        values = problem.priors.coordinates.values(problem.priors.project(iterate.u + move))
+        sums = problem.objective.with_decays([decay]).at(values, self._weights).with_optimal_states().residual_sums
+        along = null_space.T @ move
+        return float(sums[0] @ self._weights + along @ (self._information @ along - 2 * self._gradient))
+
+
+def _variance_at_rest(fit: FitResult) -> Real:
+    """Return the variance of each channel at rest, (m/s²)², shape (channel,); infinite where no recording shows any."""
+    recorded = [decay.rest.noise for decay in fit.decays if decay.rest.noise.shape[1]]
+    if not recorded:
+        return np.full(len(fit.noise), np.inf)
+    pooled: Real = np.nanmedian([np.mean(noise**2, axis=1) for noise in recorded], axis=0)
+    return np.where(np.isnan(pooled), np.inf, pooled)

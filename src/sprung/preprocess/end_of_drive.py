@@ -18,14 +18,15 @@ from sprung.errors import Fault
 from sprung.preprocess.landing import Landing
 from sprung.preprocess.release import Release
 
+Real = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 _PERIOD = 0.7
 """s after a moment over which power is averaged: a period of a body mode."""
 
-_REMAINING = 0.25
-"""Part of the largest power that remains where a motion begins to die away: of a mode that loses half its amplitude in a
-quarter of a second a third remains, of one that is damped less, more."""
+_REMAINING = 0.15
+"""Part of the largest power that remains when a motion has certainly begun to die away: of a mode with a damping ratio of
+0.6 and a natural frequency of 1.3 Hz so much remains at once, of one that is damped less, later."""
 
 _CLEAR = 4.0
 """Largest over least power, which is noise, of a channel that shows the motion at all."""
@@ -36,6 +37,13 @@ _LEVEL = 0.25
 _GOES_ON, _CHANGED = 0.01, 0.6
 """Part of the largest power that the last period of a recording has, and of the power of the period before, from which
 something still drives the vehicle: a mode with a damping ratio of 0.05 keeps half its power over a period."""
+
+_AT_ONCE, _JUMP = 0.02, 0.7
+"""s after its first motion within which a body that is let go is accelerated most, and the part of the largest reading at
+least; who pushes by hand begins slowly."""
+
+LET_GO = "the body was let go"
+"""Why a decay after a pull with a rope, or after a lift, begins with the first motion."""
 
 DIES_AWAY = "the motion has begun to die away"
 """Why a decay after a push or a bump begins where the recording alone shows it."""
@@ -75,7 +83,7 @@ def detect_end_of_drive(drop: DropTest, release: Release | None, clipped: Flags,
         return Fault("no-decay", recording.name, what, _REMEDIES[drop.excitation])
     is_driven = (power > _REMAINING * largest[:, None]).any(axis=0)
     free = int(np.flatnonzero(is_driven)[-1]) + 1
-    if free + 2 * width < samples:
+    if int(np.median(power.argmax(axis=1))) + 3 * width < samples:
         at_end, before = power[:, samples - width - 1], power[:, samples - 2 * width - 1]
         part = float(np.median(at_end / largest))
         if part > _GOES_ON and np.median(at_end - _CHANGED * before) > 0 and np.median(at_end - least) > 0:
@@ -85,8 +93,18 @@ def detect_end_of_drive(drop: DropTest, release: Release | None, clipped: Flags,
             )
             return Fault("no-decay", recording.name, what, _REMEDIES[drop.excitation])
     first = 0 if release is None else release.sample
+    clearest = int(np.argmax(largest / np.maximum(least, np.finfo(float).tiny)))
+    if drop.excitation == "push" and first and _is_let_go(moved[clear][clearest, first:], rate):
+        return Landing(first, first, LET_GO)
     possible = max(first, int(np.flatnonzero(clipped.any(axis=0))[-1]) + 1 if clipped.any() else 0)
     return Landing(min(possible, samples), min(max(possible, free), samples), DIES_AWAY)
+
+
+def _is_let_go(moved: Real, rate: float) -> bool:
+    """Whether the first motion of the clearest channel is about its largest, shape (time,)."""
+    width = max(round(_AT_ONCE * rate), 2)
+    smooth = np.abs(uniform_filter1d(moved, max(width // 2, 1), mode="nearest"))
+    return float(smooth[:width].max()) > _JUMP * float(smooth.max())
 
 
 def too_short(drop: DropTest, length: float, least: float) -> Fault:
