@@ -90,8 +90,8 @@ def test_a_campaign_may_mix_drops_pushes_and_passes() -> None:
             assert result.parameters[name].value == pytest.approx(value, rel=tolerance), name
 
 
-def test_a_push_by_hand_tells_the_body_and_not_the_wheels() -> None:
-    """Fifteen pushes, both axles weighed, 1 mg of noise: the body to 2 %, the wheels honestly less, and nothing is guessed."""
+def test_a_push_by_hand_tells_the_body_and_the_wheels_hardly() -> None:
+    """Fifteen pushes, both axles weighed, 1 mg of noise: the body to 2 %, the wheels less, and that is said."""
     car = TABLE_1_CAR
     front = car.m_s * car.b / car.wheelbase + 2 * car.m_uf
     axles = {"front_axle_mass": front, "rear_axle_mass": car.total_mass - front}
@@ -112,8 +112,8 @@ def test_a_push_by_hand_tells_the_body_and_not_the_wheels() -> None:
             assert found.value is None or abs(found.value - truth) < 4 * (found.std or 0.0)
         else:
             assert found.value == pytest.approx(truth, rel=0.02), name
-    wheels = [result.parameters[name] for name in ("m_uf", "m_ur")]
-    assert all(one.value is None or (one.std or 0.0) > 0.02 * one.value for one in wheels)
+    stds = {name: (found.std or 0.0) / (found.value or 1.0) for name, found in result.parameters.items()}
+    assert min(stds["m_uf"], stds["m_ur"]) > 3 * max(stds["m_s"], stds["I_yy"])
 
 
 @pytest.mark.long
