@@ -67,9 +67,9 @@ def assess(run: Analysis, progress: Progress) -> Analysis:
     misfit = estimate_model_error(fit.residual_moments, decays)
     motions = body_motions(statistics, decays, campaign.sensors)
     validated = cross_validate_drops(optimum, fit, decays, channels, motions)
-    accused = sum(any(fault.code in CONTRADICTING for fault in faults) for _, faults in run.prepared.left_out)
+    contradicting = sum(any(fault.code in CONTRADICTING for fault in faults) for _, faults in run.prepared.left_out)
     reasons = [fault.what for fault in suspected]
-    verdict = decide_verdict(fit, misfit, estimates, channels, reasons, validated, accused)
+    verdict = decide_verdict(fit, misfit, estimates, channels, reasons, validated, contradicting)
     rejected = verdict.state == "reject"
     profiles = {} if rejected else profiles_of(run.options.profile, optimum, statistics, structure.known, progress)
     loads = [load.name for load in campaign.loads if any(decay.load == load.name for decay in decays)]
