@@ -75,7 +75,7 @@ def test_recordings_alone_show_no_more_than_there_is(excitation: str, push: str,
 
 
 def test_a_campaign_may_mix_drops_pushes_and_passes() -> None:
-    drops = [
+    drops: list[dict[str, object]] = [
         {"excitation": "push"},
         {"excitation": "pass", "speed": 5.0},
         {"wheels": ["fl", "fr"]},

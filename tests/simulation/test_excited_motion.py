@@ -10,7 +10,7 @@ from sprung.errors import InputError
 from sprung.simulation import Bump, Push, drive_over_bump, drive_over_half_sine_bump, push_body, tyre_rates
 from sprung.simulation.excited_motion import bump_drive
 from sprung.simulation.ground import Ground
-from sprung.vehicle import EMPTY, TABLE_1_CAR, Load, Vehicle
+from sprung.vehicle import EMPTY, TABLE_1_CAR, Load, Vehicle, Wheel
 
 ALMOST = TABLE_1_CAR.with_values(F_f=1e-9, s_f=1e5, F_r=1e-9, s_r=1e5)
 """The same car with a friction that nobody feels: its motions are stepped."""
@@ -44,7 +44,8 @@ def test_a_low_bump_is_the_half_sine_of_the_paper() -> None:
 )
 def test_a_pass_obeys_the_equations_of_motion(bump: Bump, vehicle: Vehicle) -> None:
     """An ordinary differential equation solver with the same ground, wheels that may leave it included."""
-    wheels, speed, until = ("fl", "rl"), 5.0, 0.9
+    wheels: tuple[Wheel, ...] = ("fl", "rl")
+    speed, until = 5.0, 0.9
     motion = drive_over_bump(vehicle, EMPTY, wheels, speed, bump, duration=2.0)
     drive, ground = bump_drive(vehicle, wheels, speed, bump), Ground.under(vehicle, EMPTY, 9.80665)
     M, C, K = ground.matrices
@@ -107,7 +108,11 @@ def test_a_vehicle_that_is_hardly_nonlinear_moves_like_a_linear_one(excitation: 
 
 
 def test_a_campaign_records_as_long_after_the_excitation_as_asked() -> None:
-    drops = [{"excitation": "pass", "speed": 2.0}, {"excitation": "push"}, {"wheels": ["fl", "fr"]}]
+    drops: list[dict[str, object]] = [
+        {"excitation": "pass", "speed": 2.0},
+        {"excitation": "push"},
+        {"wheels": ["fl", "fr"]},
+    ]
     campaign = sprung.simulate(TABLE_1_CAR, drops=drops, rest=0.3, duration=2.0, push={"count": 1, "frequency": 1.0})
     driven = [(TABLE_1_CAR.wheelbase + 0.5) / 2.0, 0.5, 0.0]
     lengths = [recording.values.shape[1] / recording.rate for recording in campaign.recordings]
@@ -119,7 +124,7 @@ def test_a_campaign_records_as_long_after_the_excitation_as_asked() -> None:
 def test_wheels_that_do_not_exist_are_named(wheels: tuple[str, ...]) -> None:
     for excite in (push_body, drive_over_bump):
         with pytest.raises(InputError):
-            excite(TABLE_1_CAR, wheels=wheels)  # type: ignore[operator]
+            excite(TABLE_1_CAR, wheels=wheels)  # type: ignore[arg-type]
 
 
 def test_a_push_or_bump_that_is_wrong_is_a_problem_of_the_arguments() -> None:

@@ -142,7 +142,9 @@ def fit_from_ordinary_vehicle(search: ModelSearch, structure: ModelStructure) ->
     """
     values, _ = ordinary_vehicle(structure)
     models, sensors, known = structure.linear_models, structure.sensors, structure.known
-    wheels = {name: KnownValue(values[name]) for name in structure.names if name.startswith("m_u") and name not in known}
+    wheels = {
+        name: KnownValue(values[name]) for name in structure.names if name.startswith("m_u") and name not in known
+    }
     held = fit_linear(search.decays, models, sensors, {**known, **wheels}, start=values, enough=NEAR, most=ITERATIONS)
     fit = fit_linear(search.decays, models, sensors, known, start=held.parameters, enough=NEAR, most=ITERATIONS)
     return replace(search, structure=structure, fit=fit.after(search.fit))
