@@ -8,8 +8,8 @@ from preprocess.test_end_of_drive import CASES
 from sprung.analysis import AnalysisOptions
 from sprung.analysis.analysis import Analysis
 from sprung.analysis.stages import STAGES
-from sprung.simulation import Acting, Bump, Push
-from sprung.vehicle import EMPTY, TABLE_1_CAR, Vehicle
+from sprung.simulation import Acting, Bump, PadMotion, Push, default_sensors
+from sprung.vehicle import EMPTY, TABLE_1_CAR, Sensor, Vehicle
 from vehicle.test_layouts import PARTS
 
 EVERY_WAY = (("fl", "fr", "rl", "rr"), ("fl", "fr"), ("rl", "rr"), ("fl", "rl"), ("fr", "rr"))
@@ -136,3 +136,27 @@ def test_damper_mounts_are_found_behind_a_bump() -> None:
     assert result.verdict.state == "accept"
     assert result.fit.model == ("damper-mount",)
     assert result.parameters["k_df"].value == pytest.approx(2.4e5, rel=0.05)
+
+
+@pytest.mark.long
+def test_a_campaign_may_mix_pads_with_pushes_and_passes() -> None:
+    car = TABLE_1_CAR
+    pads = [
+        Sensor(channel=f"pad_{wheel}", on=f"pad {wheel}", quantity="displacement", unit="mm")  # type: ignore[arg-type]
+        for wheel in car.layout.wheels
+    ]
+    sensors = default_sensors(car)
+    campaign = sprung.simulate(
+        car,
+        sensors=[*sensors, *pads],
+        drops=[{"excitation": "pads"}, {"excitation": "pass"}, {"excitation": "push", "wheels": ["fl", "fr"]}],
+        noise={**{one.channel: 0.02 for one in sensors}, **{one.channel: 1e-5 for one in pads}},
+        pads=PadMotion(duration=12.0),
+        known={"total_mass": {"value": car.total_mass, "std": 1.0}},
+        seed=1,
+    )
+    result = sprung.identify(campaign)
+    assert result.verdict.state == "accept"
+    assert not result.faults
+    for name, value in car.parameters.items():
+        assert result.parameters[name].value == pytest.approx(value, rel=0.01), name

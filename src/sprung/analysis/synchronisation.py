@@ -103,7 +103,7 @@ def synchronise_at_release(
     """
     from sprung.simulation import drop_from_blocks  # noqa: PLC0415 (only several loggers need it)
 
-    if seen.release is None:
+    if seen.release is None or drop.is_driven:
         return decay
     parameters, height = with_separate_tracks(vehicle.parameters), drop.height or _LOW
     try:

@@ -180,5 +180,6 @@ def _variance_at_rest(fit: FitResult) -> Real:
     recorded = [decay.rest.noise for decay in fit.decays if decay.rest.noise.shape[1]]
     if not recorded:
         return np.full(len(fit.noise), np.inf)
-    pooled: Real = np.nanmedian([np.mean(noise**2, axis=1) for noise in recorded], axis=0)
-    return np.where(np.isnan(pooled), np.inf, pooled)
+    variances = np.array([np.mean(noise**2, axis=1) for noise in recorded])
+    pooled: Real = np.nanmedian(np.where(np.isfinite(variances).any(axis=0), variances, np.inf), axis=0)
+    return pooled
