@@ -100,6 +100,16 @@ def test_forces_known_to_one_percent_give_the_scale_to_half_of_that() -> None:
     assert mass.std == pytest.approx(0.005 * 1380, rel=0.2)
 
 
+def test_a_force_that_reads_ten_percent_too_little_is_suspected() -> None:
+    """Gains are stated to 1 %: the fit bears with it, but says so."""
+    campaign = sprung.simulate(TABLE_1_CAR, drops=[PADS], noise=NOISE, seed=1, pads=SHORT, sensor_errors=True)
+    factors = np.array([0.9 if sensor.channel == "force_rl" else 1.0 for sensor in campaign.sensors])
+    recordings = [replace(one, values=factors[:, None] * one.values) for one in campaign.recordings]
+    result = sprung.identify(campaign.with_recordings(recordings), extras=(), tracks="shared")
+    assert result.verdict.state == "doubtful"
+    assert [(fault.code, fault.where) for fault in result.faults] == [("unlike-others", "force_rl")]
+
+
 def without(campaign: Campaign, channels: set[str]) -> Campaign:
     """Return a campaign in which channels hold nothing."""
     gone = [sensor.channel in channels for sensor in campaign.sensors]

@@ -8,6 +8,7 @@ from dataclasses import replace
 from sprung.analysis.analysis import MOST_RESTARTS, Analysis
 from sprung.analysis.baseline import converged
 from sprung.analysis.first_term import explaining_term
+from sprung.analysis.on_pads import suspect_sensor
 from sprung.analysis.settling import settle_corrections
 from sprung.campaign import Campaign
 from sprung.estimation import NEAR, FitResult
@@ -47,7 +48,7 @@ def isolate_faults(run: Analysis, progress: Progress) -> Analysis:
     """Correct what explains much of what no model term explains; what is ambiguous is only named."""
     run = _with_isolated(run, _consistency(run), progress)
     found = run.found
-    named = tuple(one.fault for one in found if one.remedy == "named")
+    named = tuple(one.fault for one in found if one.remedy == "named") or (() if found else suspect_sensor(run))
     run = replace(run, suspected=tuple(dict.fromkeys((*run.suspected, *named))))
     for fault in named:
         run = run.noted("isolate_faults", f"suspected {fault.code} of {fault.where}", fault.what)
