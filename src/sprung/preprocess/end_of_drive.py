@@ -93,15 +93,14 @@ def detect_end_of_drive(drop: DropTest, release: Release | None, clipped: Flags,
             )
             return Fault("no-decay", recording.name, what, _REMEDIES[drop.excitation])
     first = 0 if release is None else release.sample
-    clearest = int(np.argmax(largest / np.maximum(least, np.finfo(float).tiny)))
-    if drop.excitation == "push" and first and _is_let_go(moved[clear][clearest, first:], rate):
+    if drop.excitation == "push" and first and any(_is_let_go(channel, rate) for channel in moved[clear, first:]):
         return Landing(first, first, LET_GO)
     possible = max(first, int(np.flatnonzero(clipped.any(axis=0))[-1]) + 1 if clipped.any() else 0)
     return Landing(min(possible, samples), min(max(possible, free), samples), DIES_AWAY)
 
 
 def _is_let_go(moved: Real, rate: float) -> bool:
-    """Whether the first motion of the clearest channel is about its largest, shape (time,)."""
+    """Whether the first motion of a channel is about its largest, shape (time,): a held body's displacement is, at once."""
     width = max(round(_AT_ONCE * rate), 2)
     smooth = np.abs(uniform_filter1d(moved, max(width // 2, 1), mode="nearest"))
     return float(smooth[:width].max()) > _JUMP * float(smooth.max())
