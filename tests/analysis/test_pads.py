@@ -100,6 +100,7 @@ def test_forces_known_to_one_percent_give_the_scale_to_half_of_that() -> None:
     assert mass.std == pytest.approx(0.005 * 1380, rel=0.2)
 
 
+@pytest.mark.long
 def test_a_force_that_reads_ten_percent_too_little_is_suspected() -> None:
     """Gains are stated to 1 %: the fit bears with it, but says so."""
     campaign = sprung.simulate(TABLE_1_CAR, drops=[PADS], noise=NOISE, seed=1, pads=SHORT, sensor_errors=True)
