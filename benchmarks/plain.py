@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
-from sprung.vehicle import TABLE_1_CAR, Rows
+from sprung.vehicle import TABLE_1_CAR, sensor_rows
 from ten_drops import Task
 
 Real = NDArray[np.float64]
@@ -56,7 +56,7 @@ class PlainFit:
     def residuals(self, values: Real) -> Real:
         """Give what the model leaves of all records, in units of their noise; parameter values in SI."""
         sensors = self.task.sensors
-        rows = Rows.of([sensor.row for sensor in sensors], self.names)
+        rows = sensor_rows(sensors, self.names)
         left = []
         for decay in self.task.decays:
             A = self.task.models[decay.load].matrices(values).state

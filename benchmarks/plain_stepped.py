@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 from scipy.optimize import OptimizeResult, least_squares
 
-from sprung.vehicle import NonlinearModel, Rows
+from sprung.vehicle import NonlinearModel, sensor_rows
 from ten_drops import FrictionTask
 
 Real = NDArray[np.float64]
@@ -63,7 +63,7 @@ class PlainSteppedFit:
         decay = self.task.decays[drop]
         model = self._models[decay.load]
         names = self.task.names
-        sensors = Rows.of([sensor.row for sensor in self.task.sensors], names).at(values)
+        sensors = sensor_rows(self.task.sensors, names).at(values)
         matrices, G = model.linear.matrices(values), model.forces.rows.at(values)
         inverse = np.linalg.inv(matrices.M)
         given = dict(zip(names, values.tolist(), strict=True))

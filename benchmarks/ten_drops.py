@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 import sprung
 from sprung.estimation import FitResult, FitStatistics, fit_jointly, fit_linear, fit_nonlinear
-from sprung.preprocess import FreeDecay, prepare
+from sprung.preprocess import FreeDecay, Prepared, prepare
 from sprung.selection.structure import choose_structure
 from sprung.uncertainty import KnownValue
 from sprung.vehicle import TABLE_1_CAR, LinearModel, NonlinearModel, Sensor, Vehicle
@@ -69,15 +69,16 @@ def ten_drops(times: int = 1) -> Task:
     """Simulate the campaign, sampled so many times as often: 1500 samples in each decay, times that."""
     campaign = _simulated(times)
     choice = choose_structure(campaign)
-    # Everybody fits from where free vibration begins, as found in a campaign of the usual rate.
-    drops = tuple(replace(drop, start=start) for drop, start in zip(campaign.drops, _starts(), strict=True))
-    decays = tuple(
-        replace(decay, values=np.ascontiguousarray(decay.values[:, : times * SAMPLES]))
-        for decay in prepare(replace(campaign, drops=drops)).decays
-    )
+    # Everybody fits from where free vibration begins, as found in a campaign of the usual rate; all samples are used, where
+    # the preparation would thin them out.
+    decays = []
+    for decay, recording in zip(_usual().decays, campaign.recordings, strict=True):
+        first = int(round((decay.start - recording.start) * recording.rate))
+        values = np.ascontiguousarray(recording.values[:, first : first + times * SAMPLES])
+        decays.append(replace(decay, values=values, rate=times * RATE))
     if {decay.values.shape for decay in decays} != {(8, times * SAMPLES)}:
         raise ValueError(f"decays of {[decay.values.shape for decay in decays]}; record for longer")
-    return Task(campaign, decays, choice.linear_models, tuple(campaign.sensors), choice.known)
+    return Task(campaign, tuple(decays), choice.linear_models, tuple(campaign.sensors), choice.known)
 
 
 def _simulated(times: int) -> sprung.Campaign:
@@ -85,9 +86,8 @@ def _simulated(times: int) -> sprung.Campaign:
 
 
 @cache
-def _starts() -> tuple[float, ...]:
-    found = [drop.start for drop in sprung.identify(_simulated(1)).drops]
-    return tuple(start for start in found if start is not None)
+def _usual() -> Prepared:
+    return prepare(_simulated(1))
 
 
 @dataclass(frozen=True, eq=False)

@@ -138,8 +138,8 @@ def si_symbol(quantity: Quantity) -> str:
     return SI_UNITS[quantity].replace("^2", "²")
 
 
-def is_unit(text: str) -> bool:
-    """Whether a text is a unit of anything that sensors measure.
+def quantity_of_unit(text: str) -> Quantity | None:
+    """Return what is measured in a unit; None where it is none of what sensors measure.
 
     Parameters
     ----------
@@ -148,15 +148,20 @@ def is_unit(text: str) -> bool:
 
     Returns
     -------
-    bool
+    str or None
+
+    Examples
+    --------
+    >>> quantity_of_unit("mm"), quantity_of_unit("deg/s"), quantity_of_unit("V")
+    ('displacement', 'angular-rate', None)
     """
     for quantity in UNITS:
         try:
             si_factor(text, quantity)
         except ValueError:
             continue
-        return True
-    return False
+        return quantity
+    return None
 
 
 def split_unit(text: str) -> tuple[str, str | None]:
@@ -185,4 +190,4 @@ def split_unit(text: str) -> tuple[str, str | None]:
         return text.strip(), None
     if match["square"] is not None:
         return match["name"], match["square"].strip()
-    return (match["name"], match["round"].strip()) if is_unit(match["round"]) else (text.strip(), None)
+    return (match["name"], match["round"].strip()) if quantity_of_unit(match["round"]) else (text.strip(), None)

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from parts_of_a_vehicle import PITCH_PLANE, QUARTER_CAR
 
 import sprung
 from sprung.campaign import Campaign
@@ -16,24 +17,6 @@ from sprung.simulation import PadMotion, default_sensors
 from sprung.vehicle import TABLE_1_CAR, Sensor, Vehicle
 
 PADS = {"excitation": "pads"}
-QUARTER_CAR = Vehicle(model="quarter", name="quarter", m_s=340.0, m_u=42.0, k_s=21e3, k_t=195e3, c_s=1450.0)
-PITCH_PLANE = Vehicle(
-    model="pitch-plane",
-    name="pitch plane",
-    m_s=650.0,
-    I_yy=980.0,
-    m_uf=40.0,
-    m_ur=36.0,
-    k_sf=19e3,
-    k_sr=23e3,
-    k_tf=190e3,
-    k_tr=185e3,
-    c_sf=1400.0,
-    c_sr=1650.0,
-    a=1.15,
-    b=1.45,
-)
-
 NOISE = {"acceleration": 0.02, "displacement": 5e-5, "force": 8.0}
 """The force to 0.2 % of a wheel load, the displacement to 0.05 mm."""
 

@@ -8,7 +8,10 @@ from functools import cache
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from parts_of_a_vehicle import QUARTER_CAR, ROLL_PLANE
 
+from estimation.test_likelihood import LOAD
+from estimation.test_likelihood import WITH_RUBBER as RUBBER
 from sprung import simulate
 from sprung.campaign import Campaign
 from sprung.estimation import fit_jointly, fit_linear
@@ -19,30 +22,12 @@ from sprung.estimation.linear_fit import problem_of
 from sprung.preprocess import FreeDecay, prepare
 from sprung.simulation import PadMotion
 from sprung.uncertainty import KnownValue
-from sprung.vehicle import TABLE_1_CAR, Load, Readout, Vehicle, parse_record
+from sprung.vehicle import TABLE_1_CAR, Readout, Vehicle
 
 Real = NDArray[np.float64]
 
-WITH_RUBBER = TABLE_1_CAR.with_values(
-    k_df=2.1e5,
-    k_dr=2.6e5,
-    c_df=80.0,
-    c_dr=110.0,
-    k_zf=3500.0,
-    k_zr=3000.0,
-    c_zf=190.0,
-    c_zr=140.0,
-    c_tf=80.0,
-    c_tr=95.0,
-)
+WITH_RUBBER = RUBBER.with_values(c_tf=80.0, c_tr=95.0)
 """Damper mounts, Zener branches and damping of the tyres."""
-
-QUARTER_CAR = Vehicle(model="quarter", name="quarter", m_s=340.0, m_u=42.0, k_s=21e3, k_t=195e3, c_s=1450.0)
-ROLL_PLANE = Vehicle(
-    model="roll-plane", name="roll plane", m_s=690.0, I_xx=170.0, m_u=44.0, k_s=23e3, k_t=190e3, c_s=1600.0, t=0.71
-)
-
-LOAD = parse_record(Load, {"name": "bags", "items": [{"mass": 200, "position": (-1.0, 0.3, 0.5)}]})
 
 NOISE = {"acceleration": 0.02, "displacement": 5e-5, "force": 8.0}
 

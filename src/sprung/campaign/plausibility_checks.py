@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from sprung.campaign.plausibility import LIMITS, Limits, explain_implausible, suggest_unit
 from sprung.campaign.schema import CampaignFile
-from sprung.units import si_factor
+from sprung.units import quantity_of_unit, si_factor
 from sprung.vehicle import LAYOUTS, PARAMETERS
 
 if TYPE_CHECKING:
@@ -117,17 +117,9 @@ def _of_sensor(sensor: object) -> dict[str, tuple[tuple[str, float], ...]]:
         stated["high_pass"] = (("corner frequency", high_pass),)
     for key, quantity in (("range", "full scale"), ("resolution", "resolution")):
         size = getattr(sensor, key, None)
-        if size is not None and unit is not None and _is_acceleration(unit):
+        if size is not None and unit is not None and quantity_of_unit(unit) == "acceleration":
             stated[key] = ((quantity, size * si_factor(unit)),)
     return stated
-
-
-def _is_acceleration(unit: str) -> bool:
-    try:
-        si_factor(unit)
-    except ValueError:
-        return False
-    return True
 
 
 def _of_drop(drop: object) -> dict[str, tuple[tuple[str, float], ...]]:

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from pathlib import PurePath
 
-from sprung.drafting.names import ends_named, sides_named, station_named, tokens, wheels_named
+from sprung.drafting.names import ends_named, parts_of, sides_named, station_named, tokens, wheels_named
 from sprung.vehicle import LAYOUTS, STATIONS, WHEELS, VehicleModel, Wheel
 
 _CENTRE = ("centre", "center", "middle", "mitte", "mittig", "both", "beide", "centro", "milieu")
@@ -148,7 +147,7 @@ def wheels_named_anywhere(path: str) -> tuple[Wheel, ...]:
     >>> wheels_named_anywhere("LHS/damped/test 3.lvm"), wheels_named_anywhere("Centre/test 3.lvm")
     (('fl', 'rl'), ('fl', 'fr', 'rl', 'rr'))
     """
-    for part in (PurePath(path).stem, *reversed(PurePath(path).parts[:-1])):
+    for part in parts_of(path):
         found = WHEELS if any(word in _CENTRE for word in tokens(part)) else wheels_named(f"{part}.csv")
         if found:
             return found

@@ -179,6 +179,17 @@ def axis_named(channel: str, others: tuple[str, ...]) -> Literal["x", "y", "z"] 
     return "x" if axis == "x" else "y" if axis == "y" else "z" if axis == "z" else None
 
 
+def parts_of(path: str) -> tuple[str, ...]:
+    """Return a recording's name without its ending, then the folders that it is in, the innermost first.
+
+    Parameters
+    ----------
+    path
+        Relative to the campaign's folder.
+    """
+    return (PurePath(path).stem, *reversed(PurePath(path).parts[:-1]))
+
+
 def load_named(path: str) -> str | None:
     """Return the load that a recording's name states, or else its folders': ``empty``, or its name.
 
@@ -192,7 +203,7 @@ def load_named(path: str) -> str | None:
     >>> load_named("Messung_leer_01.csv"), load_named("ballast/front.csv"), load_named("with_200kg.mf4"), load_named("a.csv")
     ('empty', 'ballast', '200kg', None)
     """
-    for part in (PurePath(path).stem, *reversed(PurePath(path).parts[:-1])):
+    for part in parts_of(path):
         words = tokens(part)
         mass = re.search(r"(?<!\d)(\d+)\s?_?kg", part.lower())
         if any(word in _EMPTY for word in words) or (mass is not None and int(mass[1]) == 0):

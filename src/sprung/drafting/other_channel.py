@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.drafting.quantity_names import quantity_named, quantity_of_unit, reason_against_name
-from sprung.units import Quantity, si_factor
+from sprung.drafting.quantity_names import quantity_named, reason_against_name
+from sprung.units import Quantity, quantity_of_unit, si_factor
 
 Real = NDArray[np.float64]
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import Literal
 
 from sprung.drafting.names import tokens
-from sprung.units import UNITS, Quantity, si_factor
+from sprung.units import Quantity
 
 _ACCELERATION = frozenset(
     ("acc", "accel", "acceleration", "beschl", "beschleunigung", "accelerometer", "accelerazione")
@@ -59,28 +59,6 @@ _OF_THE_ROAD = frozenset(("km/h", "kph", "rpm"))
 """Units in which speeds on the road and of shafts are stated."""
 
 _AXES: dict[str, Literal["roll", "pitch", "yaw"]] = {"x": "roll", "y": "pitch", "z": "yaw"}
-
-
-def quantity_of_unit(unit: str) -> Quantity | None:
-    """Return the quantity of which a text is a unit; None where it is a unit of none.
-
-    Parameters
-    ----------
-    unit
-        As loggers write it.
-
-    Examples
-    --------
-    >>> quantity_of_unit("mm"), quantity_of_unit("deg/s"), quantity_of_unit("°C")
-    ('displacement', 'angular-rate', None)
-    """
-    for quantity in UNITS:
-        try:
-            si_factor(unit, quantity)
-        except ValueError:
-            continue
-        return quantity
-    return None
 
 
 def quantity_named(channel: str) -> Quantity | None:

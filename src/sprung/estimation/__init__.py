@@ -5,6 +5,7 @@ from sprung.estimation.closed_form import ClosedFormObjective
 from sprung.estimation.closed_form_likelihood import ClosedFormAt
 from sprung.estimation.contact import clear_of_splines, fit_from_contact
 from sprung.estimation.curves import CurvePoint, ForceCurve, force_curves
+from sprung.estimation.elimination import eliminate
 from sprung.estimation.estimates import (
     Correlation,
     Scale,
@@ -76,6 +77,7 @@ __all__ = [
     "characteristics_of",
     "clear_of_splines",
     "correlation_of",
+    "eliminate",
     "engine_mountings",
     "escape_local_optimum",
     "estimate_of",

@@ -14,9 +14,9 @@ def eliminate(information: Real, gradient: Real, kept: int) -> tuple[Real, Real,
     Parameters
     ----------
     information, gradient
-        Of all unknowns, shapes (..., unknown, unknown) and (..., unknown).
+        Of all unknowns, shapes (..., unknown, unknown) and (..., unknown), in the units of their products.
     kept
-        How many of the first unknowns are kept.
+        Number of the first unknowns that are kept.
 
     Returns
     -------

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from sprung.formats.stated_rates import TIME_UNITS
 from sprung.formats.text_clock import CLOCK, is_time_name
-from sprung.units import is_unit
+from sprung.units import quantity_of_unit
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -265,7 +265,7 @@ def _are_units(cells: tuple[str, ...]) -> bool:
 
 def _is_unit(cell: str) -> bool:
     bracketed = cell[:1] in ("[", "(") and cell[-1:] in ("]", ")")
-    return cell.lower() in TIME_UNITS or bracketed or is_unit(cell)
+    return cell.lower() in TIME_UNITS or bracketed or quantity_of_unit(cell) is not None
 
 
 def _decimal(text: str, start: int, delimiter: str) -> str:

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from sprung.campaign import DEFAULT_HEIGHT, Drop, Excitation
 from sprung.display import shown
 from sprung.errors import InputError, Problem
-from sprung.estimation import ClosedFormObjective, Coordinates, PriorsAndConstraints
+from sprung.estimation import ClosedFormObjective, Coordinates, PriorsAndConstraints, eliminate
 from sprung.preprocess import FreeDecay, unknown_release
 from sprung.simulation import Acting, DropMotion
 from sprung.uncertainty import KnownValue
@@ -229,9 +229,7 @@ class MeasurementSetup:
         information = information + by_coordinate.T @ by_coordinate
         order = [larger.names.index(name) for name in (*self.names, *known)]
         kept = len(self.names)
-        information = information[np.ix_(order, order)]
-        across, own = information[kept:, :kept], information[kept:, kept:]
-        information = information[:kept, :kept] - across.T @ np.linalg.solve(own, across)
+        information, _, _ = eliminate(information[np.ix_(order, order)], np.zeros(len(order)), kept)
         return self.free.T @ information @ self.free
 
     def _coordinate_information(self, drops: Sequence[PlannedDrop], sampling: float) -> Real:
