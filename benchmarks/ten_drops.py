@@ -73,7 +73,7 @@ def ten_drops(times: int = 1) -> Task:
     # the preparation would thin them out.
     decays = []
     for decay, recording in zip(_usual().decays, campaign.recordings, strict=True):
-        first = int(round((decay.start - recording.start) * recording.rate))
+        first = round((decay.start - recording.start) * recording.rate)
         values = np.ascontiguousarray(recording.values[:, first : first + times * SAMPLES])
         decays.append(replace(decay, values=values, rate=times * RATE))
     if {decay.values.shape for decay in decays} != {(8, times * SAMPLES)}:

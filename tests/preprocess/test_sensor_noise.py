@@ -65,6 +65,19 @@ def test_a_quiet_rest_does_not_take_the_colour_of_what_moves(decays: tuple[FreeD
     assert found.variance == pytest.approx(np.ones(8), abs=0.3)
 
 
+def test_a_vehicle_that_still_moves_on_its_blocks_is_no_noise(decays: tuple[FreeDecay, ...]) -> None:
+    """Released soon after it was set down: four of ten rests show the motion."""
+    random = np.random.default_rng(5)
+    swinging = 10 * np.sin(0.08 * np.arange(RESTED))
+    own = [
+        rested(one, random.standard_normal((8, RESTED)) + (swinging if number % 5 > 2 else 0.0))
+        for number, one in enumerate(decays)
+    ]
+    found = estimate_sensor_noise(own, pool_moments(5 * process((len(decays), 8, COUNT), 0.99, random)))
+    assert found.variance == pytest.approx(np.ones(8), abs=0.3)
+    assert np.all(found.samples >= RESTED * np.ceil(len(decays) / 2))
+
+
 def rounded(clean: Campaign, step: float) -> Campaign:
     return clean.with_recordings(replace(r, values=step * np.round(r.values / step)) for r in clean.recordings)
 

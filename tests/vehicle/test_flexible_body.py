@@ -22,7 +22,7 @@ def car_with(more: dict[str, float]) -> Vehicle:
     return Vehicle.from_parameters(TABLE_1_CAR.parameters | more)
 
 
-TWISTS = car_with(oscillator(("I_w", "k_w", "c_w"), 40.0, 12.0, 0.02) | {"a_w": 0.1})
+TWISTS = car_with(oscillator(("I_w", "k_w", "c_w"), 40.0, 12.0, 0.02) | {"a_w": 0.1, "u_w": 0.03, "e_w": -0.02})
 BENDS = car_with(oscillator(("m_v", "k_v", "c_v"), 900.0, 14.0, 0.02) | {"b_v": 0.25, "p_v": 0.05})
 SEATED = car_with(oscillator(("m_o", "k_o", "c_o"), 150.0, 4.5, 0.3) | {"x_o": -1.2, "y_o": 0.2})
 CARS = pytest.mark.parametrize("car", [TWISTS, BENDS, SEATED], ids=["twist", "bending", "occupants"])
@@ -37,15 +37,17 @@ BAGS = Load(
 
 
 def test_the_shapes_are_those_of_a_body_that_turns_and_bends_along_its_length() -> None:
-    """The angle of twist is linear along the body, the deflection by bending a parabola through the axles."""
-    car = Vehicle.from_parameters(TWISTS.parameters | {name: BENDS.parameters[name] for name in BENDS.parameters})
+    """The angle of twist is a cubic along the body, linear from axle to axle; bending is a parabola through both."""
+    car = Vehicle.from_parameters(TWISTS.parameters | BENDS.parameters)
     names, L = tuple(car.parameters), car.wheelbase
     places = [(0.3, 0.5), (0.0, 0.7), (-L / 2, 0.6), (-L, -0.4), (-3.1, 0.2)]
     sensors = [Sensor(channel=str(i), on="body", position=(x, y, 0.5)) for i, (x, y) in enumerate(places)]
-    rows = sensor_rows(sensors, names).at(list(car.parameters.values()))
+    rows = sensor_rows(sensors, names, L).at(list(car.parameters.values()))
     order = coordinates(names)
     x, y = np.array(places).T
-    assert_allclose(rows[:, order.index("q_w")], y * (x + L / 2), atol=1e-12)
+    along = 1 + 2 * x / L
+    angle = along / 2 + (1 - along**2) * (0.03 + 0.02 * along)  # over that between the axles: 1/2 and -1/2 at them
+    assert_allclose(rows[:, order.index("q_w")], y * L * angle, atol=1e-12)
     assert_allclose(rows[:, order.index("q_v")], (L / 2) ** 2 / 2 - (x + L / 2) ** 2 / 2, atol=1e-12)
     # A pure twist strains springs by what the corners rise; the middle's rise by bending strains none.
     K = car.matrices().K - np.diag([car.k_w * L**2 if name == "q_w" else 0.0 for name in order])

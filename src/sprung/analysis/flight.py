@@ -21,7 +21,15 @@ from sprung.estimation import CONVERGED, FitStatistics, uncertainty_of, weigh_st
 from sprung.preprocess import DropObservation, FreeDecay, find_flights
 from sprung.progress import Progress, Step
 from sprung.selection import ModelSearch, fit_structure, select_gravity_leakage
-from sprung.vehicle import Readout, Vehicle, evaluate_quantity, layout_of, parameter_names, state_variables
+from sprung.vehicle import (
+    Readout,
+    Vehicle,
+    evaluate_quantity,
+    layout_of,
+    parameter_names,
+    state_variables,
+    wheelbase_of,
+)
 
 Real = NDArray[np.float64]
 
@@ -115,7 +123,7 @@ def _initial_states(run: Analysis, found: Sequence[FreeDecay | None]) -> Real:
     campaign, optimum = run.campaign, run.fit
     states = optimum.states[:, : len(state_variables(optimum.names))].copy()
     vehicle = Vehicle.nearest(optimum.parameters, name="fitted", **run.model.structure.heights.by_key)
-    rows = Readout.of(campaign.sensors, optimum.names).at(optimum.values)
+    rows = Readout.of(campaign.sensors, optimum.names, wheelbase_of(optimum.names, optimum.values)).at(optimum.values)
     observations = {observation.recording.name: observation for observation in run.prepared.observations}
     for state, flight in zip(states, found, strict=True):
         if flight is not None:

@@ -21,7 +21,7 @@ from sprung.campaign import CLOCK_STD, Drop
 from sprung.errors import SprungError
 from sprung.estimation import FitResult
 from sprung.preprocess import DropObservation, FlightLikelihood, FreeDecay
-from sprung.vehicle import Heights, Load, Readout, Sensor, Vehicle, with_separate_tracks
+from sprung.vehicle import Heights, Load, Readout, Sensor, Vehicle, wheelbase_of, with_separate_tracks
 
 Real = NDArray[np.float64]
 
@@ -172,13 +172,14 @@ def _flights(
     Shapes (channel, time) and (parameter, channel, time), m/s² and that per SI unit, in steps of `_FINE`.
     """
     names, samples = tuple(parameters), int(_FLIGHT / _FINE)
+    readout = Readout.of(sensors, names, wheelbase_of(names, parameters.values()))
 
     from sprung.simulation import drop_from_blocks  # noqa: PLC0415 (only several loggers need it)
 
     def flight(values: Mapping[str, float]) -> Real:
         vehicle = Vehicle.nearest(values, name="falling", **heights.by_key)
         fall = drop_from_blocks(vehicle, load, drop.wheels, height, duration=_FLIGHT)
-        return Readout.of(sensors, names).read(list(values.values()), fall.motion(_FINE, samples))
+        return readout.read(list(values.values()), fall.motion(_FINE, samples))
 
     steps = {name: _NUDGE * (abs(value) or 1.0) for name, value in parameters.items()}
     here = flight(parameters)

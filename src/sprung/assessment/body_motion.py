@@ -13,7 +13,7 @@ from sprung.assessment.residuals import estimate_noise_level
 from sprung.display import shown
 from sprung.estimation import FitStatistics
 from sprung.preprocess import FreeDecay
-from sprung.vehicle import FULL, Readout, Sensor, layout_of
+from sprung.vehicle import FULL, Readout, Sensor, layout_of, wheelbase_of
 
 Real = NDArray[np.float64]
 
@@ -137,7 +137,7 @@ def body_rows(fit: FitStatistics, sensors: Sequence[Sensor]) -> Real:
     """
     body = layout_of(fit.names).body
     rows = np.zeros((len(sensors), 3))
-    readout = Readout.of(sensors, fit.names)
+    readout = Readout.of(sensors, fit.names, wheelbase_of(fit.names, fit.values))
     accelerations = readout.of_accelerations(readout.at(fit.values))
     rows[:, [FULL.body.index(one) for one in body]] = accelerations[:, : len(body)]
     on_body = np.array([sensor.on == "body" for sensor in sensors])

@@ -98,6 +98,8 @@ LIMITS: Mapping[str, Limits] = {
     "w_l": Limits(10, 1e4, "1/s²"),
     "c_l": Limits(0, 1e3, "1/s"),
     **_of_axles(Limits(0, 1e4, "N/(m kg)"), "g"),
+    "u_w": Limits(-1.0, 1.0, "1"),
+    "e_w": Limits(-1.0, 1.0, "1"),
     "y_s": Limits(-1.5, 1.5, "m"),
     "x_e": _SYMMETRIC_LENGTH,
     "cg_height": Limits(0.1, 4.0, "m"),

@@ -40,6 +40,7 @@ from sprung.estimation.starts import (
     usual_rubber,
     usual_vehicle,
 )
+from sprung.estimation.statements import statements_of
 from sprung.estimation.statistics import FitStatistics, Inflater, fit_jointly, uncertainty_of
 from sprung.estimation.subspace import canonical_basis
 
@@ -101,6 +102,7 @@ __all__ = [
     "score_nonlinear_terms",
     "score_stepped_terms",
     "shape_of",
+    "statements_of",
     "to_estimates",
     "uncertainty_of",
     "unidentifiable_combinations",

@@ -25,6 +25,7 @@ from sprung.estimation.problem import (
     least_information,
 )
 from sprung.estimation.starts import VehicleSize, start_grid
+from sprung.estimation.statements import readout_of, statements_of
 from sprung.optimisation import Maximum, maximise
 from sprung.preprocess import FreeDecay
 from sprung.progress import Progress, Step, silent
@@ -32,13 +33,11 @@ from sprung.uncertainty import KnownValue
 from sprung.vehicle import (
     AXLES,
     LinearModel,
-    Readout,
     Sensor,
     is_nuisance,
     layout_of,
     parameter_name,
     separate_track_names,
-    uncertainties_of,
 )
 
 Real = NDArray[np.float64]
@@ -125,8 +124,8 @@ def fit_linear(
         progress(Step("setting the loggers' clocks"))
         apart = fit_linear(decays, models, sensors, known, start=first.parameters, enough=enough, progress=progress)
         return apart.after(first)
-    objective = objective_of(decays, models, sensors)
-    known = {**known, **uncertainties_of(sensors)}
+    objective = objective_of(decays, models, sensors, known)
+    known = statements_of(known, sensors, next(iter(models.values())).names)
     nuisance = expected_nuisances(known)
     if start is not None:
         values = nuisance | dict(start)
@@ -164,11 +163,14 @@ def expected_nuisances(known: Mapping[str, KnownValue]) -> dict[str, float]:
 
 
 def objective_of(
-    decays: Sequence[FreeDecay], models: Mapping[str, LinearModel], sensors: Sequence[Sensor]
+    decays: Sequence[FreeDecay],
+    models: Mapping[str, LinearModel],
+    sensors: Sequence[Sensor],
+    known: Mapping[str, KnownValue],
 ) -> LinearObjective:
     """Return the likelihood of decays as a function of the parameters of linear models."""
     names = next(iter(models.values())).names
-    return linear_objective(decays, models, Readout.with_unknowns(sensors, names), sensors)
+    return linear_objective(decays, models, readout_of(sensors, names, known), sensors)
 
 
 def problem_of(

@@ -13,8 +13,9 @@ from sprung.estimation.linear_fit import problem_of
 from sprung.estimation.priors import Coordinates
 from sprung.estimation.problem import Iterate
 from sprung.estimation.score_test import score_added, score_test
+from sprung.estimation.statements import readout_of, statements_of
 from sprung.uncertainty import KnownValue
-from sprung.vehicle import LinearModel, Readout, Sensor, separate_track_names, uncertainties_of
+from sprung.vehicle import LinearModel, Sensor, separate_track_names
 
 Real = NDArray[np.float64]
 
@@ -105,13 +106,14 @@ def score_linear_term(
         For each of the starts the gain in twice the log-likelihood, to second order, and the parameters of the larger model
         after one Newton step, SI, by name.
     """
-    at, readout = fit.iterate.at.modal, Readout.with_unknowns(sensors, next(iter(models.values())).names)
+    names = next(iter(models.values())).names
+    at, readout = fit.iterate.at.modal, readout_of(sensors, names, known)
     objective = (
         linear_objective(fit.decays, models, readout, sensors)
         if at is None
         else at.objective.with_models(models, readout)
     )
-    known = {**known, **uncertainties_of(sensors)}
+    known = statements_of(known, sensors, names)
     scores = []
     for values in starts:
         problem = problem_of(objective, known, values)

@@ -18,6 +18,7 @@ from sprung.vehicle import (
     coordinates,
     differentiate_tyre_rates_at_rest,
     layout_of,
+    wheelbase_of,
     with_tyre_rates_at_rest,
 )
 from sprung.vibration import Mode, is_vibration, largest_entry, name_modes, paper_name
@@ -84,7 +85,7 @@ def mode_estimates(fit: FitStatistics, model: LinearModel, sensors: Sequence[Sen
     -------
     tuple of ModeEstimate
     """
-    readout = Readout.of(sensors, fit.names)
+    readout = Readout.of(sensors, fit.names, wheelbase_of(fit.names, fit.values))
     values, by_parameter = (
         with_tyre_rates_at_rest(model, fit.values),
         differentiate_tyre_rates_at_rest(model, fit.values),

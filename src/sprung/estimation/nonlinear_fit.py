@@ -14,12 +14,13 @@ from sprung.estimation.linear_fit import NEAR, expected_nuisances
 from sprung.estimation.priors import Coordinates, PriorsAndConstraints, UsualValue
 from sprung.estimation.problem import CLOSE_BY, CONVERGED, FAR, EstimationProblem, Iterate
 from sprung.estimation.score_test import score_test
+from sprung.estimation.statements import readout_of, statements_of
 from sprung.estimation.time_stepping import TimeSteppingObjective
 from sprung.optimisation import Maximum
 from sprung.preprocess import FreeDecay
 from sprung.progress import Progress, Step, silent
 from sprung.uncertainty import KnownValue
-from sprung.vehicle import NonlinearModel, Readout, Sensor, uncertainties_of
+from sprung.vehicle import NonlinearModel, Sensor
 
 Real = NDArray[np.float64]
 
@@ -92,7 +93,7 @@ def fit_nonlinear(
     """
     laws = ", ".join(law.name for law, *_ in next(iter(models.values())).forces.laws)
     progress(Step(f"fitting with {laws}, step by step through all drops"))
-    known = {**known, **uncertainties_of(sensors)}
+    known = statements_of(known, sensors, next(iter(models.values())).names)
     steps, values = 0, expected_nuisances(known) | dict(start)
     stages = (
         [([_beginning(decay) for decay in decays], max(enough, NEAR if beginning_only else _ON_THE_WAY), _COARSE)]
@@ -103,7 +104,7 @@ def fit_nonlinear(
         stages.append((list(decays), enough, _FINE))
     for part, tolerance, longest_step in stages:
         objective = _objective(
-            part, models, sensors, states, tilting, longest_step, _COARSE if tolerance > CONVERGED else _FINE
+            part, models, sensors, known, states, tilting, longest_step, _COARSE if tolerance > CONVERGED else _FINE
         )
         problem = _problem(objective, known, values, usual)
         start_damping = FAR if usual else CLOSE_BY
@@ -155,9 +156,9 @@ def score_stepped_terms(
     dict
         In twice the log-likelihood, to second order.
     """
-    known = {**known, **uncertainties_of(sensors)}
+    known = statements_of(known, sensors, next(iter(models.values())).names)
     values = expected_nuisances(known) | dict(values)
-    objective = _objective(decays, models, sensors, states, tilting, _COARSE, _COARSE)
+    objective = _objective(decays, models, sensors, known, states, tilting, _COARSE, _COARSE)
     problem = _problem(objective, known, values)
     names, priors = problem.priors.coordinates.names, problem.priors
     u = priors.project(priors.coordinates.from_parameters(values))
@@ -189,12 +190,13 @@ def _objective(
     decays: Sequence[FreeDecay],
     models: Mapping[str, NonlinearModel],
     sensors: Sequence[Sensor],
+    known: Mapping[str, KnownValue],
     states: Real,
     tilting: bool,
     longest_step: float,
     longest_derivative_step: float,
 ) -> TimeSteppingObjective:
-    readout = Readout.with_unknowns(sensors, next(iter(models.values())).names)
+    readout = readout_of(sensors, next(iter(models.values())).names, known)
     return TimeSteppingObjective(tuple(decays), models, readout, states, tilting, longest_step, longest_derivative_step)
 
 

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from sprung.estimation.objective import NoiseCoupling, Objective, ObjectiveAt
 from sprung.estimation.priors import PriorsAndConstraints
 from sprung.optimisation import Maximum, NormalEquations, maximise
-from sprung.vehicle import is_of_sensor
+from sprung.vehicle import PARAMETERS, is_of_sensor
 
 Real = NDArray[np.float64]
 
@@ -400,6 +400,8 @@ class EstimationProblem:
         for name, known in self.priors.statements.items():
             if is_of_sensor(name):
                 continue  # what is beyond them is a fault
+            if name in PARAMETERS and PARAMETERS[name].usual_std > 0:
+                continue  # nobody stated it
             without = self.priors.without(name)
             relaxed = replace(self, priors=without)
             move, gain = identifiable_equations(*relaxed.system(iterate, inflation)).step()

@@ -16,7 +16,7 @@ from sprung.faults.candidate_fit import DRIFT_SPAN, CandidateFit
 from sprung.faults.low_pass import LowPass
 from sprung.preprocess import FreeDecay
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import Sensor, coordinates, sensor_rows
+from sprung.vehicle import Sensor, coordinates, sensor_rows, wheelbase_of
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -133,7 +133,8 @@ class ChannelPrediction:
 
     def row(self, sensor: Sensor) -> Real:
         """Return the row of the coordinates that a sensor measures, shape (coordinate,)."""
-        of_sensor: Real = sensor_rows([sensor], self.candidate.fit.names).at(self.candidate.fit.values)[0]
+        fit = self.candidate.fit
+        of_sensor: Real = sensor_rows([sensor], fit.names, wheelbase_of(fit.names, fit.values)).at(fit.values)[0]
         return of_sensor
 
     def residual_of(self, predicted: Real) -> Real:

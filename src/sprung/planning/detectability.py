@@ -160,7 +160,8 @@ def _readings(
     setup: MeasurementSetup, vehicle: Vehicle, drops: Sequence[PlannedDrop], windows: Sequence[tuple[int, int]]
 ) -> list[Real]:
     """Return what the sensors read in a window of each drop, SI, shape (channel, time)."""
-    readout, values = Readout.of(setup.sensors, tuple(vehicle.parameters)), list(vehicle.parameters.values())
+    readout = Readout.of(setup.sensors, tuple(vehicle.parameters), vehicle.wheelbase)
+    values = list(vehicle.parameters.values())
     return [
         readout.read(values, Motion(*(part[:, first : first + samples] for part in motion)))
         for motion, (first, samples) in zip(_motions(setup, vehicle, drops), windows, strict=True)

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from sprung.campaign import DEFAULT_HEIGHT, Drop, Excitation
 from sprung.display import shown
 from sprung.errors import InputError, Problem
-from sprung.estimation import ClosedFormObjective, Coordinates, PriorsAndConstraints, eliminate
+from sprung.estimation import ClosedFormObjective, Coordinates, PriorsAndConstraints, eliminate, statements_of
 from sprung.preprocess import FreeDecay, unknown_release
 from sprung.simulation import Acting, DropMotion
 from sprung.uncertainty import KnownValue
@@ -36,7 +36,6 @@ from sprung.vehicle import (
     parameter_names,
     parameter_of,
     stiffened_air_springs,
-    uncertainties_of,
 )
 
 Real = NDArray[np.float64]
@@ -127,12 +126,16 @@ class MeasurementSetup:
     @cached_property
     def names(self) -> tuple[str, ...]:
         """Parameters of the model, masses of loads that are known with an uncertainty, and what is uncertain of the sensors."""
-        return (*parameter_names(self.tracks, self.extras, self.vehicle.layout), *filter(is_nuisance, self.statements))
+        return (*self._own_names, *filter(is_nuisance, self.statements))
+
+    @property
+    def _own_names(self) -> tuple[str, ...]:
+        return parameter_names(self.tracks, self.extras, self.vehicle.layout)
 
     @cached_property
     def statements(self) -> Mapping[str, KnownValue]:
         """Everything that is known beforehand, of the vehicle, of loads and of sensors."""
-        return {**self.known, **uncertainties_of(self.sensors)}
+        return statements_of(self.known, self.sensors, self._own_names)
 
     @cached_property
     def values(self) -> Real:
@@ -284,12 +287,12 @@ class MeasurementSetup:
                 + stiffened_air_springs(
                     load.mass_at_wheels(wheelbase, layout), self.tracks, self.extras, wheelbase, layout
                 )
-                + load.elements(heights, self.names),
+                + load.elements(heights, self.names, wheelbase),
                 self.names,
             )
             for load, name in names.items()
         }
-        return ClosedFormObjective(decays, models, Readout.of(self.sensors, self.names))
+        return ClosedFormObjective(decays, models, Readout.of(self.sensors, self.names, wheelbase))
 
     def decay_window(self, drop: PlannedDrop) -> tuple[int, int]:
         """Return the first sample of a drop's decay, counted from the release, and the number of samples."""
@@ -310,7 +313,7 @@ class MeasurementSetup:
             where = f"drop of {self.vehicle.name}, load '{drop.load.name}'"
             raise InputError([Problem(where, found, f"{_SHORTEST} s", "Lower the blocks, or record for longer.")])
         parameters, channels = self.vehicle.parameters, len(self.sensors)
-        readout = Readout.of(self.sensors, tuple(parameters))
+        readout = Readout.of(self.sensors, tuple(parameters), self.vehicle.wheelbase)
         return FreeDecay(
             name=load,
             file=load,

@@ -24,6 +24,9 @@ _MAY_BE = 3.0
 _MOST_LOST = 0.5
 """Part of the noise, at the most, that is removed with the level and the creep of a rest."""
 
+_LOUD = 2.0
+"""Times the usual level of rests, beyond which one is none: the vehicle still moves on its blocks."""
+
 _CHANCE = 2.0
 """Standard deviations of the random walk in a decay that chance may make of it."""
 
@@ -113,7 +116,7 @@ def estimate_sensor_noise(decays: Sequence[FreeDecay], residuals: Moments) -> Se
     if not rests:
         nothing = np.zeros(len(quantisation))
         return SensorNoise(nothing, nothing, nothing, quantisation, np.ones_like(nothing))
-    variance, neighbour, number = pool_moments(rests)
+    variance, neighbour, number = pool_moments(_quiet(rests, quantisation))
     samples = np.maximum(number, 1.0)
     at_rest = np.clip(_correlation(variance, neighbour), 0.0, 1.0)
     admitted = at_rest + _MAY_BE * np.sqrt((1 - at_rest**2) / samples)
@@ -129,6 +132,13 @@ def estimate_sensor_noise(decays: Sequence[FreeDecay], residuals: Moments) -> Se
         quantisation + _CHANCE**2 * _random_walk(decays) * of_means * (variance + removed),
         (1 + rho**2) / (1 - rho**2),
     )
+
+
+def _quiet(rests: Sequence[Real], quantisation: Real) -> list[Real]:
+    """Return the rests with NaN in channels in which they are far louder than usual: there the vehicle still moved."""
+    levels = np.sqrt(np.array([rest.var(axis=1) for rest in rests]) + quantisation)
+    usual = np.median(np.where(np.isnan(levels), np.inf, levels), axis=0)
+    return [np.where((level > _LOUD * usual)[:, None], np.nan, rest) for level, rest in zip(levels, rests, strict=True)]
 
 
 def _correlation(variance: Real, neighbour: Real) -> Real:

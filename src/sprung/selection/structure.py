@@ -137,7 +137,8 @@ class ModelStructure:
         """Linear equations of motion by load name, without nonlinear forces."""
         return {
             load.name: LinearModel.of(
-                self._elements(load) + load.elements(self.heights_of(load.name), self.names), self.names
+                self._elements(load) + load.elements(self.heights_of(load.name), self.names, self.wheelbase),
+                self.names,
             )
             for load in self.campaign.loads
         }
@@ -151,7 +152,9 @@ class ModelStructure:
             at_wheels = load.mass_at_wheels(self.wheelbase, self.layout)
             forces = nonlinear_elements(self.tracks, self.terms, self.wheelbase, at_wheels, self.layout) + contact
             heights = self.heights_of(load.name)
-            models[load.name] = NonlinearModel.of(self._elements(load), forces, self.names, load, heights)
+            models[load.name] = NonlinearModel.of(
+                self._elements(load), forces, self.names, load, heights, wheelbase=self.wheelbase
+            )
         return models
 
     def _elements(self, load: Load) -> tuple[Element, ...]:

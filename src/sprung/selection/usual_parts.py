@@ -26,7 +26,8 @@ def natural_frequency(rate: float, mass: float) -> float:
 def usual_twist(own: Values, structure: ModelStructure, factor: float = 1.0) -> Values:
     """Return a usual twist of the body, its modal mass multiplied by a factor."""
     inertia, omega = factor * _MODAL_INERTIA * own["I_xx"], 2 * np.pi * structure.body_frequency
-    return {"I_w": inertia, "k_w": inertia * omega**2, "c_w": 2 * _BODY_DAMPING * inertia * omega, "a_w": 0.0}
+    rates = {"I_w": inertia, "k_w": inertia * omega**2, "c_w": 2 * _BODY_DAMPING * inertia * omega}
+    return {**rates, "a_w": 0.0, "u_w": 0.0, "e_w": 0.0}
 
 
 def usual_bending(own: Values, structure: ModelStructure, factor: float = 1.0) -> Values:

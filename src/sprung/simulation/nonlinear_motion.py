@@ -175,7 +175,9 @@ def _models(
         further = stiffened_air_springs(at_wheels, tracks, extras, wheelbase, layout)
         nonlinear = nonlinear_elements(tracks, extras, wheelbase, at_wheels, layout)
         models.append(
-            NonlinearModel.of(elements + further, [*nonlinear, *contact], names, load, vehicle.heights, gravity)
+            NonlinearModel.of(
+                elements + further, [*nonlinear, *contact], names, load, vehicle.heights, gravity, wheelbase
+            )
         )
     order = [load.name for load in different]
     return models, np.array([order.index(load.name) for load in loads])

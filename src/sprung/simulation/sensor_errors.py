@@ -77,7 +77,7 @@ class SensorErrors:
         """
         moved = [_moved(sensor, *place.tolist()) for sensor, place in zip(sensors, self.place, strict=True)]
         names, values = tuple(vehicle.parameters), list(vehicle.parameters.values())
-        readings = Readout.of(moved, names).read(values, motion)
+        readings = Readout.of(moved, names, vehicle.wheelbase).read(values, motion)
         readings *= np.cos(np.linalg.norm(self.tilt, axis=1))[:, None]
         angles = Rows.of([Row({"theta": 1.0}), Row({"phi": 1.0})], names).at(values)
         pitch, roll = STANDARD_GRAVITY * (angles @ motion.displacement)

@@ -217,7 +217,7 @@ class SimulationSetup:
         if errors is not None:
             return errors.readings(vehicle, sensors, of_coordinates, rate, of_pads)
         parameters = vehicle.parameters
-        readout = Readout.of(sensors, tuple(parameters))
+        readout = Readout.of(sensors, tuple(parameters), vehicle.wheelbase)
         return np.asarray(readout.read(list(parameters.values()), of_coordinates) + of_pads)
 
 

@@ -38,6 +38,7 @@ from sprung.vehicle.layout import (
     half_distances,
     layout_of,
     parameter_name,
+    wheelbase_of,
 )
 from sprung.vehicle.load import EMPTY, Added, Finite, Item, Load, NotNegative, Positive
 from sprung.vehicle.model import LINEAR_LAWS, LinearModel, Matrices, Rows, highest_derivatives, state_matrix
@@ -173,6 +174,7 @@ __all__ = [
     "terms_of",
     "uncertainties_of",
     "wheel_loads",
+    "wheelbase_of",
     "with_separate_tracks",
     "with_tyre_rates_at_rest",
 ]

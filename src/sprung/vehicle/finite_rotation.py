@@ -19,7 +19,7 @@ from scipy.signal import lfilter
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import kinematics
 from sprung.vehicle.heights import Heights
-from sprung.vehicle.layout import WHEELS, LinearLaw, Tracks, Wheel, half_distances
+from sprung.vehicle.layout import WHEELS, LinearLaw, Tracks, Wheel, half_distances, wheelbase_of
 from sprung.vehicle.load import Load
 from sprung.vehicle.model import LinearModel, Rows, highest_derivatives
 from sprung.vehicle.readout import sensor_rows
@@ -114,7 +114,8 @@ def second_order_readings(
     rows = np.zeros((len(sensors), len(A)))
     # The others read a motion, not the rate of a velocity: to them the second order is of no account.
     accelerometers = np.array([sensor.reads_gravity for sensor in sensors])[:, None]
-    rows[:, n:] = accelerometers * sensor_rows(sensors, model.names).at(values)[:, :m]
+    wheelbase = wheelbase_of(model.names, values.tolist())
+    rows[:, n:] = accelerometers * sensor_rows(sensors, model.names, wheelbase).at(values)[:, :m]
     readings = _forced_rates(A, inputs, np.vstack([series for _, series in forces]), rows, step, ends)
     turning = accelerometers * _sensor_rotation(model, heights, sensors, values, signals)
     return np.split(readings + turning, ends, axis=1)

@@ -7,7 +7,8 @@ half the difference dz_o of people on the left and on the right; then those with
 a rubber mount.
 A body that is not rigid has its twist q_w, rad/m, and its bending q_v, 1/m: at x forward of the front axle and y left of
 the centreline it rises by y (x + L/2) q_w - x (x + L)/2 q_v with the wheelbase L = a + b. So θ and z_s are those of the
-line through both axles, and φ is the roll in the middle between them.
+line through both axles, and φ is the roll in the middle between them. No body twists evenly: by the shape parameters u_w and
+e_w it turns between the axles, and beyond them, by a parabola and a cubic more, which vanish at both axles.
 
 A row g has the displacement g·X. Every row is affine in the geometric parameters (a, b and the half-distances), so a row is its
 constant part and one slope per parameter; derivatives with respect to geometry need nothing else.
@@ -180,13 +181,15 @@ def unconstrained(names: Collection[str]) -> tuple[str, ...]:
     return tuple(coordinate for coordinate in UNCONSTRAINED if free[coordinate])
 
 
-def body_point(x: float, y: float) -> Row:
+def body_point(x: float, y: float, wheelbase: float = 0.0) -> Row:
     """Vertical displacement of a point of the body.
 
     Parameters
     ----------
     x, y
         Position, m: forward of the front axle, left of the centreline. The centre of gravity is at x = -a.
+    wheelbase
+        Of a body that twists unevenly, m; 0 for one that twists evenly.
 
     Returns
     -------
@@ -194,7 +197,12 @@ def body_point(x: float, y: float) -> Row:
     """
     bent = {"q_w": y / 2, "q_v": -x / 2}
     constant = {"z_s": 1.0, "theta": -x, "phi": y, "q_w": x * y, "q_v": -x * x / 2}
-    return Row(constant, {"a": {"theta": -1.0, **bent}, "b": bent})
+    slopes = {"a": {"theta": -1.0, **bent}, "b": bent}
+    if not wheelbase:
+        return Row(constant, slopes)
+    along = 1 + 2 * x / wheelbase
+    uneven = y * wheelbase * (1 - along**2)
+    return Row(constant, {**slopes, "u_w": {"q_w": uneven}, "e_w": {"q_w": -uneven * along}})
 
 
 def pitch(wheelbase: float = 0.0) -> Row:

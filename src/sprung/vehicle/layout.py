@@ -7,7 +7,7 @@ of a vehicle with one axle loses the index of the axle.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import Literal, NamedTuple
 
 VehicleModel = Literal["full", "pitch-plane", "roll-plane", "quarter"]
@@ -114,6 +114,21 @@ WHEELS = FULL.wheels
 
 COORDINATES = FULL.coordinates
 """The paper's coordinates, displacements in m and angles in rad."""
+
+
+def wheelbase_of(names: Sequence[str], values: Iterable[float]) -> float:
+    """Return the wheelbase of a vehicle, m; 0 where front and rear are not told apart.
+
+    Parameters
+    ----------
+    names, values
+        Its parameters; values in SI, shape (parameter,).
+
+    Returns
+    -------
+    float
+    """
+    return float(sum(value for name, value in zip(names, values, strict=True) if name in ("a", "b")))
 
 
 def layout_of(names: Collection[str]) -> Layout:

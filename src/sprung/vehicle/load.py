@@ -77,7 +77,9 @@ class Item:
         """Whether it lies on a seat."""
         return self.on == "seat"
 
-    def elements(self, heights: Heights, mass: str | float | None = None, seat: int | None = None) -> Iterator[Element]:
+    def elements(
+        self, heights: Heights, mass: str | float | None = None, seat: int | None = None, wheelbase: float = 0.0
+    ) -> Iterator[Element]:
         """Yield the elements of the item.
 
         Parameters
@@ -88,17 +90,20 @@ class Item:
             Name of the parameter that is its mass, or kg; its own mass unless given.
         seat
             Number of the seat on which it moves; as if on the floor unless given.
+        wheelbase
+            Of a body that twists unevenly, m.
         """
         mass = self.mass if mass is None else mass
         if self.position is None:
             yield from (Element("mass", mass, kinematics.wheel(wheel)) for wheel in STATIONS if wheel == self.on)
         else:
             x, y, z = self.position
+            floor = kinematics.body_point(x, y, wheelbase)
             if seat is None:
-                yield Element("mass", mass, kinematics.body_point(x, y))
+                yield Element("mass", mass, floor)
             else:
                 yield Element("mass", mass, kinematics.on_seat(seat))
-                yield from _cushion(self.mass, kinematics.body_point(x, y) - kinematics.on_seat(seat))
+                yield from _cushion(self.mass, floor - kinematics.on_seat(seat))
             # How far its own inertia follows a floor that bends or twists under it, nobody knows: it turns with the body.
             arms, rows = heights.item_arms(z), (kinematics.roll(), kinematics.pitch())
             for row, own, arm in zip(rows, self.inertia, arms, strict=True):
@@ -243,7 +248,9 @@ class Load:
     def _name_of(self, item: int, several: bool) -> str:
         return f"{LOAD_MASS}{self.name}, item {item + 1}" if several else f"{LOAD_MASS}{self.name}"
 
-    def elements(self, heights: Heights = LEVEL, unknown: Collection[str] = ()) -> tuple[Element, ...]:
+    def elements(
+        self, heights: Heights = LEVEL, unknown: Collection[str] = (), wheelbase: float = 0.0
+    ) -> tuple[Element, ...]:
         """Return the elements of the load; ΔM is the sum of the masses, full where the items are off centre.
 
         Parameters
@@ -254,6 +261,8 @@ class Load:
         unknown
             Names of parameters; masses of `uncertain_masses` among them are parameters instead of numbers, and items on seats
             move by themselves if w_l is among them.
+        wheelbase
+            Of a body that twists unevenly, with u_w among the names, m.
 
         Raises
         ------
@@ -273,9 +282,10 @@ class Load:
         if self.added is not None:
             name = self._name_of(0, several=False)
             return (*elements, *self.added.elements(name if name in unknown else None))
+        twisting = wheelbase if "u_w" in unknown else 0.0
         for i, item in enumerate(self.items):
             name = self._name_of(i, len(self.items) > 1)
-            elements += item.elements(heights, name if name in unknown else None, seats.get(i))
+            elements += item.elements(heights, name if name in unknown else None, seats.get(i), twisting)
         return tuple(elements)
 
 

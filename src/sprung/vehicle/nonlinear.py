@@ -215,9 +215,30 @@ class NonlinearModel:
         load: Load = EMPTY,
         heights: Heights = LEVEL,
         gravity: float = STANDARD_GRAVITY,
+        wheelbase: float = 0.0,
     ) -> NonlinearModel:
-        """Compile the linear and nonlinear elements of a vehicle with its heights and load, over a list of parameter names."""
-        added = load.elements(heights, names)
+        """Compile the linear and nonlinear elements of a vehicle with its heights and load, over a list of parameter names.
+
+        Parameters
+        ----------
+        elements, nonlinear
+            Of the empty vehicle.
+        names
+            The parameters.
+        load
+            What is on it.
+        heights
+            Of the empty vehicle, m, as far as they are known.
+        gravity
+            m/s².
+        wheelbase
+            Of a body that twists unevenly, m.
+
+        Returns
+        -------
+        NonlinearModel
+        """
+        added = load.elements(heights, names, wheelbase)
         linear = LinearModel.of([*elements, *added], names)
         return cls(linear, LinearModel.of(added, names), NonlinearForces.of(nonlinear, names), gravity)
 

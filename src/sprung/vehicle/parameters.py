@@ -25,6 +25,8 @@ class Parameter(NamedTuple):
     """Whether it may be negative."""
     vanishes_at_infinity: bool = False
     """Whether the effect of its term vanishes where it is infinite: the rate of a spring in series, or a modal mass."""
+    usual_std: float = 0.0
+    """Standard deviation around zero in vehicles of all kinds, SI, which counts where nothing is stated; 0 for none."""
 
 
 _TABLE: Mapping[str, Parameter] = {
@@ -75,6 +77,22 @@ _TABLE: Mapping[str, Parameter] = {
     "k_w": Parameter("N m", "stiffness of the body's twist, for the angle between the axles", True),
     "c_w": Parameter("N m s", "damping of the body's twist, for the angle between the axles", True),
     "a_w": Parameter("m", "node of the body's twist, ahead of the middle between the axles", False, False, True),
+    "u_w": Parameter(
+        "1",
+        "how far the body is turned in the middle between the axles, as it twists, over the twist between them",
+        False,
+        False,
+        True,
+        usual_std=0.1,
+    ),
+    "e_w": Parameter(
+        "1",
+        "unevenness of the body's twist: more of it near the middle than towards the axles",
+        False,
+        False,
+        True,
+        usual_std=0.1,
+    ),
     "m_v": Parameter(
         "kg",
         "modal mass of the body's bending, for the rise of its middle above its axles",
@@ -157,7 +175,7 @@ _TERMS: Mapping[str, tuple[str, ...]] = {
     "mount-damping": ("c_d*",),
     "zener": ("k_z*", "c_z*"),
     "interconnection": ("k_x*", "c_x*"),
-    "twist": ("I_w", "k_w", "c_w", "a_w"),
+    "twist": ("I_w", "k_w", "c_w", "a_w", "u_w", "e_w"),
     "bending": ("m_v", "k_v", "c_v", "b_v", "p_v"),
     "occupants": ("m_o", "k_o", "c_o", "x_o", "y_o"),
     "seat-load": ("w_l", "c_l"),
@@ -192,7 +210,7 @@ _NEEDS: Mapping[str, Callable[[Layout], bool]] = {
 _WITHOUT_EFFECT: Mapping[str, float] = {
     **dict.fromkeys(("s*", "k_e", "k_w"), 1e6),
     **dict.fromkeys(("v_k*", "v_2*", "v_3*", "x_b*"), 1.0),
-    **dict.fromkeys(("c_e", "x_e", "a_w", "b_v", "p_v", "c_o", "x_o", "y_o", "c_l"), 0.0),
+    **dict.fromkeys(("c_e", "x_e", "a_w", "u_w", "e_w", "b_v", "p_v", "c_o", "x_o", "y_o", "c_l"), 0.0),
     **dict.fromkeys(("c_z*", "c_x*", "c_w"), 1e3),
     "k_v": 1e7,
     "c_v": 1e4,

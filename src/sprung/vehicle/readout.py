@@ -56,7 +56,7 @@ class Readout:
     places: Rows
 
     @classmethod
-    def of(cls, sensors: Sequence[Sensor], names: Sequence[str]) -> Readout:
+    def of(cls, sensors: Sequence[Sensor], names: Sequence[str], wheelbase: float = 0.0) -> Readout:
         """Return the readout over a list of parameters; what is uncertain of a sensor but not in the list is as stated.
 
         Parameters
@@ -65,6 +65,8 @@ class Readout:
             In the order of the channels.
         names
             The parameters, those of the sensors last.
+        wheelbase
+            Of a body that twists unevenly, m.
 
         Raises
         ------
@@ -77,16 +79,30 @@ class Readout:
             dtype=np.int64,
         ).reshape(-1, len(SENSOR_UNKNOWNS))
         own = names[: len(names) - int(np.sum(positions >= 0))]
-        read = [sensor.rows(own) for sensor in sensors]
+        read = [sensor.rows(own, wheelbase) for sensor in sensors]
         orders = tuple(sorted({order for one in read for order in one})) or (2,)
         origin, *moved = (body_point(*place) for place in ((0.0, 0.0), (1.0, 0.0), (0.0, 1.0)))
         placed = [dict.fromkeys(one, row - origin) for row in moved for one in read]
         return cls(tuple(names), _stacked(read, orders, own), orders, positions, _stacked(placed, orders, own))
 
     @classmethod
-    def with_unknowns(cls, sensors: Sequence[Sensor], names: Sequence[str]) -> Readout:
-        """Return the readout with everything that is uncertain of the sensors as further parameters behind those of a list."""
-        return cls.of(sensors, (*names, *(name for sensor in sensors for name in sensor.uncertainties)))
+    def with_unknowns(cls, sensors: Sequence[Sensor], names: Sequence[str], wheelbase: float = 0.0) -> Readout:
+        """Return the readout with everything that is uncertain of the sensors as further parameters behind those of a list.
+
+        Parameters
+        ----------
+        sensors
+            In the order of the channels.
+        names
+            The parameters of the vehicle.
+        wheelbase
+            Of a body that twists unevenly, m.
+
+        Returns
+        -------
+        Readout
+        """
+        return cls.of(sensors, (*names, *(name for sensor in sensors for name in sensor.uncertainties)), wheelbase)
 
     @cached_property
     def shared(self) -> int:
@@ -244,7 +260,7 @@ def _stacked(rows: Sequence[Mapping[int, Row]], orders: Sequence[int], names: Se
     return Rows(np.concatenate(blocks, axis=1)) if blocks else Rows.of([], names)
 
 
-def sensor_rows(sensors: Sequence[Sensor], names: Sequence[str]) -> Rows:
+def sensor_rows(sensors: Sequence[Sensor], names: Sequence[str], wheelbase: float = 0.0) -> Rows:
     """Return the rows of the displacements that sensors observe, themselves or by a derivative of theirs.
 
     Parameters
@@ -253,10 +269,12 @@ def sensor_rows(sensors: Sequence[Sensor], names: Sequence[str]) -> Rows:
         In the order of the channels.
     names
         Parameters of the vehicle.
+    wheelbase
+        Of a body that twists unevenly, m.
 
     Returns
     -------
     Rows
         One for each sensor; of a force that by the displacement.
     """
-    return Rows.of([next(iter(sensor.rows(names).values())) for sensor in sensors], names)
+    return Rows.of([next(iter(sensor.rows(names, wheelbase).values())) for sensor in sensors], names)

@@ -133,13 +133,15 @@ class Sensor:
         """
         return si_factor(self.unit or SI_UNITS[self.quantity], self.quantity)
 
-    def rows(self, names: Collection[str]) -> dict[int, Row]:
+    def rows(self, names: Collection[str], wheelbase: float = 0.0) -> dict[int, Row]:
         """Return what it reads of a vehicle: rows of displacements, of their rates and of their second derivatives.
 
         Parameters
         ----------
         names
             Parameters of the vehicle: they say what lies over a wheel, and how a tyre presses.
+        wheelbase
+            Of a body that twists unevenly, m.
 
         Returns
         -------
@@ -161,9 +163,9 @@ class Sensor:
             }
         if self.pad is not None:
             return {0: Row({})}  # a pad's own displacement is no motion of the vehicle
-        return {_ORDERS[self.quantity]: self._row(names)}
+        return {_ORDERS[self.quantity]: self._row(names, wheelbase)}
 
-    def _row(self, names: Collection[str]) -> Row:
+    def _row(self, names: Collection[str], wheelbase: float) -> Row:
         """Return the row of the displacement, or the angle, that it observes itself or by a derivative."""
         if self.wheel is not None:
             return kinematics.wheel(self.wheel)
@@ -178,7 +180,7 @@ class Sensor:
         if self.on is None or self.position is None:
             found, expected = ("no position", "[x, y, z], m") if self.on else ("no wheel station", "fl, fr, rl or rr")
             raise InputError([Problem(f"sensor '{self.channel}'", found, expected, "State the place of the sensor.")])
-        own = kinematics.body_point(self.position[0], self.position[1])
+        own = kinematics.body_point(self.position[0], self.position[1], wheelbase if "u_w" in names else 0.0)
         return own if self.relative_to is None else own - kinematics.wheel(self.relative_to)
 
     @property

@@ -11,7 +11,7 @@ from sprung.display import shown
 from sprung.errors import Problems, did_you_mean
 from sprung.vehicle.elements import linear_elements, stiffened_air_springs
 from sprung.vehicle.heights import Heights
-from sprung.vehicle.layout import LAYOUTS, Layout, Tracks, VehicleModel
+from sprung.vehicle.layout import LAYOUTS, Layout, Tracks, VehicleModel, wheelbase_of
 from sprung.vehicle.load import EMPTY, Load
 from sprung.vehicle.model import LinearModel, Matrices
 from sprung.vehicle.parameter_values import (
@@ -104,9 +104,10 @@ class Vehicle:
     k_xf, k_xr, c_xf, c_xr
         Interconnection of left and right, hydraulic or by air: a rate k_x against a difference in travel, N/m, in series with a
         damping c_x, N s/m, so that it resists roll and relaxes with c_x / k_x.
-    I_w, k_w, c_w, a_w
+    I_w, k_w, c_w, a_w, u_w, e_w
         Twist of the body: modal inertia, kg m², stiffness, N m, and damping, N m s, for the angle between the axles, and its
-        node, m ahead of the middle between them. An infinite inertia is that of a body that does not twist.
+        node, m ahead of the middle between them; and how unevenly it turns along its length, by a parabola and by a cubic that
+        vanish at the axles, dimensionless. An infinite inertia is that of a body that does not twist.
     m_v, k_v, c_v, b_v, p_v
         Bending of the body: modal mass, kg, stiffness, N/m, and damping, N s/m, for the rise of its middle above its axles;
         rise of the centre of gravity, 1, and mean pitch, 1/m, over that. An infinite mass is that of a body that does not bend.
@@ -264,7 +265,7 @@ class Vehicle:
     @property
     def wheelbase(self) -> float:
         """Front axle to rear axle, m; 0 where front and rear are not told apart."""
-        return self.a + self.b if self.layout.pitches else 0.0
+        return wheelbase_of(tuple(self.parameters), self.parameters.values())
 
     @property
     def total_mass(self) -> float:
@@ -299,7 +300,7 @@ class Vehicle:
         elements = linear_elements(self.tracks, self.extras, self.heights, self.wheelbase, self.layout)
         at_wheels = load.mass_at_wheels(self.wheelbase, self.layout)
         elements += stiffened_air_springs(at_wheels, self.tracks, self.extras, self.wheelbase, self.layout)
-        elements += load.elements(self.heights, tuple(self.parameters))
+        elements += load.elements(self.heights, tuple(self.parameters), self.wheelbase)
         return LinearModel.of(elements, tuple(self.parameters))
 
     def matrices(self, load: Load = EMPTY) -> Matrices:

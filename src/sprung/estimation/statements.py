@@ -1,0 +1,37 @@
+"""What a fit is told beforehand: of the vehicle, of its sensors, and what holds in vehicles of all kinds."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from sprung.estimation.starts import VehicleSize
+from sprung.uncertainty import KnownValue
+from sprung.vehicle import Readout, Sensor, layout_of, parameter_of, uncertainties_of
+
+
+def statements_of(
+    known: Mapping[str, KnownValue], sensors: Sequence[Sensor], names: Sequence[str]
+) -> dict[str, KnownValue]:
+    """Return everything that is known beforehand, SI, by name.
+
+    Parameters
+    ----------
+    known
+        What is stated of the vehicle and of loads, SI.
+    sensors
+        With the uncertainties of their gains, places and delays.
+    names
+        Parameters of the model: some are about zero in every vehicle, unless they are stated.
+
+    Returns
+    -------
+    dict
+    """
+    spread = {name: parameter_of(name).usual_std for name in names}
+    usual = {name: KnownValue(0.0, std) for name, std in spread.items() if std > 0}
+    return {**usual, **known, **uncertainties_of(sensors)}
+
+
+def readout_of(sensors: Sequence[Sensor], names: Sequence[str], known: Mapping[str, KnownValue]) -> Readout:
+    """Return what sensors read, everything uncertain of them as further parameters; arguments as for `statements_of`."""
+    return Readout.with_unknowns(sensors, names, VehicleSize.of(known, sensors, layout_of(names)).wheelbase)
