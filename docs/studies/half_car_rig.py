@@ -28,8 +28,18 @@ MASS, HALF_DISTANCE = 433.0, 0.75
 SHEET: Mapping[str, float] = {"k_s": 20.5e3, "k_t": 147.2e3, "I_xx": 82.7, "m_u": 56.1}
 """What the data sheet states beside, SI."""
 
-TERMS = ("tyre-damping", "interconnection", "friction")
-"""Model terms that the recordings need; the interconnection has to be stated, as no search tries it."""
+TERMS = ("tyre-damping", "friction")
+"""Model terms that the recordings need."""
+
+DAMPED_TERMS = (*TERMS, "interconnection")
+"""With the hydraulic dampers; the interconnection has to be stated, as no search tries it."""
+
+UNDAMPED = "damped_0"
+"""The setting without them."""
+
+WHEEL = 0.5
+"""Relative standard uncertainty with which the data sheet's unsprung mass is taken: displacements hardly show it apart from the
+gains of the wheels' sensors, and without it a fit may end with wheels heavier than the body."""
 
 GAIN = 0.1
 """Standard uncertainty of the gain of the body's sensors: those of both sides differ by 9 % at rest."""
@@ -69,8 +79,10 @@ def main() -> None:
 def complete(path: Path) -> Path:
     """Fill the gaps of a drafted campaign file: what the data sheet states, and the drops without a load."""
     document = tomllib.loads(path.read_text(encoding="utf-8"))
-    document["known"] = {"m_s": MASS, "t": HALF_DISTANCE}
-    document["model"] = {"tracks": "shared", "extras": list(TERMS)}
+    wheel = {"value": SHEET["m_u"], "std": WHEEL * SHEET["m_u"]}
+    document["known"] = {"m_s": MASS, "t": HALF_DISTANCE, "m_u": wheel}
+    terms = TERMS if path.parent.name == UNDAMPED else DAMPED_TERMS
+    document["model"] = {"tracks": "shared", "extras": list(terms)}
     document.pop("load", None)
     document["drop"] = [drop for drop in document["drop"] if drop["load"] == "empty"]
     for sensor in document["sensor"]:
@@ -148,8 +160,8 @@ and masses are the same in all settings. Does the program find them so?
 They are public ("LAB TEST FOLDER" of the repository DARKMOONlite/DS-C_B-Half-Car-Rig-Analysis on GitHub) and without a
 licence, so that nothing of them is in this project. `sprung new FOLDER` drafts one campaign for each setting from the folder as
 it is. {drops} lifts without added masses are identified here. What the folder does not say was filled in from the rig's data
-sheet: the sprung mass, {MASS:g} kg, which gives the scale of everything, and the half-distance of springs and sensors,
-{HALF_DISTANCE:g} m.
+sheet: the sprung mass, {MASS:g} kg, which gives the scale of everything, the half-distance of springs and sensors,
+{HALF_DISTANCE:g} m, and the unsprung mass, {SHEET["m_u"]:g} kg, with half of it as its standard uncertainty.
 
 What `sprung check` says of every recording: it is spliced from two parts. In the first half second to second all channels
 passed a low-pass of some 50 Hz, and are 8.3 ms late; that part is advanced (fault `splice`). The right sensor of the body
@@ -198,9 +210,10 @@ Reasons of the verdicts:
 
 def _row(setting: str, outcome: Mapping[str, Any]) -> list[str]:
     found = outcome["parameters"]
-    cells = [_with_std(*found[name], factor) for name, (_, factor) in SHOWN.items()]
-    relaxes = found["c_x"][0] / found["k_x"][0] if found["c_x"][0] and found["k_x"][0] else np.nan
-    return [setting, outcome["verdict"], ", ".join(outcome["faults"]), *cells, f"{relaxes:.2f}"]
+    cells = [_with_std(*found.get(name, (None, None)), factor) for name, (_, factor) in SHOWN.items()]
+    rate, damping = (found.get(name, (None, None))[0] for name in ("k_x", "c_x"))
+    relaxes = f"{damping / rate:.2f}" if rate and damping else "-"
+    return [setting, outcome["verdict"], ", ".join(outcome["faults"]), *cells, relaxes]
 
 
 def _with_std(value: float | None, std: float | None, factor: float) -> str:

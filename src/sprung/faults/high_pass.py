@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from sprung.errors import Fault
 from sprung.estimation import FitResult, score_added
 from sprung.faults.fault_scores import FaultScore
-from sprung.preprocess import FreeDecay, differentiate_by_cutoff
+from sprung.preprocess import FreeDecay, differentiate_by_cutoff, estimate_sensor_noise
 from sprung.uncertainty import round_by_uncertainty
 from sprung.vehicle import Sensor
 
@@ -44,11 +44,14 @@ class CornerScores:
     shifts
         By how many of its standard uncertainties each direction of the parameters shifts with each corner, s, shape
         (direction, corner).
+    ramps
+        What ramps and random walks add to the variance of the score of each corner, over that of white noise, shape (corner,).
 
     Notes
     -----
-    Where a high-pass was undone, an error of the level at rest has become a ramp, another one in every drop. By how much the
-    drops differ in what they say of a corner enlarges its variance (White, Econometrica 48 (1980) 817).
+    Where a high-pass was undone, an error of the level at rest has become a ramp, another one in every drop; how large it is
+    follows from the noise at rest. By how much the drops differ in what they say of a corner enlarges its variance (White,
+    Econometrica 48 (1980) 817), which few drops show by chance only.
     """
 
     channels: tuple[str, ...]
@@ -57,6 +60,7 @@ class CornerScores:
     score: Real
     information: Real
     shifts: Real
+    ramps: Real
 
     def single(self) -> Iterator[FaultScore]:
         """Yield the score of each corner as if it were the only one; values in Hz."""
@@ -112,7 +116,7 @@ class CornerScores:
         own = np.einsum("dcc->dc", self.informations)
         left = self.scores - own * self.scores.sum(axis=0) / own.sum(axis=0)
         each = self._per_drop * np.sum(left**2, axis=0) / own.sum(axis=0)
-        inflation: Real = np.maximum(each, max(float(each.mean()), 1.0))
+        inflation: Real = np.maximum(np.maximum(each, 1.0 + self.ramps), float(each.mean()))
         return inflation
 
     @property
@@ -161,6 +165,7 @@ def score_corners(decays: Sequence[FreeDecay], optimum: FitResult, sensors: Sequ
     information, gradient = np.zeros((parameters + count,) * 2), np.zeros(parameters + count)
     information[:parameters, :parameters], gradient[:parameters] = at.information, at.gradient
     scores, alone = np.zeros((drops, count)), np.zeros((drops, count, count))
+    ramps, levels = np.zeros(count), _level_errors(decays, optimum)
     for i, channel in enumerate(open_):
         changed = [_changed(decay, change, channel) for decay, change in zip(decays, changes, strict=True)]
         there = optimum.problem.objective.with_decays(changed).at(optimum.values, weights)
@@ -173,12 +178,49 @@ def score_corners(decays: Sequence[FreeDecay], optimum: FitResult, sensors: Sequ
             grown = np.nan_to_num(moved - moved.mean(axis=1, keepdims=True) - residual)
             alone[drop, i] = weights[open_] * np.einsum("ct,ct->c", grown[open_], change[open_])
             scores[drop, i] = -weights[channel] * np.nan_to_num(residual[channel]) @ change[channel]
+            ramps[i] += _variance_by_undoing(
+                weights[channel] * grown[channel], decay, channel, weights[channel], levels
+            )
     information[parameters:, :parameters] = information[:parameters, parameters:].T
     information[parameters:, parameters:], gradient[parameters:] = alone.sum(axis=0), scores.sum(axis=0)
     test = score_added(optimum, gradient, information)
     score, left = determined(test.score, test.information)
     channels = tuple(sensors[channel].channel for channel in open_)
-    return CornerScores(channels, scores, alone, score, left, test.shifts)
+    own = np.einsum("dcc->c", alone)
+    chance = np.divide(ramps, own, out=np.zeros(count), where=own > 0)
+    return CornerScores(channels, scores, alone, score, left, test.shifts, chance)
+
+
+def _level_errors(decays: Sequence[FreeDecay], optimum: FitResult) -> Real:
+    """Return the standard uncertainty of a level at rest of each channel, m/s², shape (channel,); 0 without a rest."""
+    noise = estimate_sensor_noise(decays, optimum.residual_moments)
+    rested = np.mean([decay.rest.noise.shape[1] for decay in decays])
+    errors: Real = np.sqrt(noise.variance * noise.per_independent_mean / max(float(rested), 1.0))
+    return errors
+
+
+def _variance_by_undoing(along: Real, decay: FreeDecay, channel: int, weight: float, levels: Real) -> float:
+    """Return what undoing a high-pass adds to the variance of a score.
+
+    Parameters
+    ----------
+    along
+        Derivative of the score by the samples, shape (time,).
+    decay, channel
+        Where it is.
+    weight
+        1/σ² of the noise, s⁴/m².
+    levels
+        Standard uncertainty of the level at rest of each channel, m/s², shape (channel,).
+
+    Notes
+    -----
+    With the cut-off ω an error ε of the level is the ramp ω t ε, and noise has its integral times ω added, a random walk.
+    """
+    cutoff = 2 * np.pi * decay.high_pass[channel] / decay.rate if decay.high_pass else 0.0
+    later = np.cumsum(along[::-1])[::-1]  # every sample of noise goes on in all later ones
+    of_noise = float(np.sum((along + cutoff * later) ** 2 - along**2)) / weight
+    return of_noise + float(cutoff * np.arange(len(along)) @ along * levels[channel]) ** 2
 
 
 def determined(score: Real, information: Real) -> tuple[Real, Real]:

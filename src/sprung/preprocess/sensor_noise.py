@@ -58,6 +58,12 @@ class SensorNoise(NamedTuple):
         level: Real = np.sqrt(self.variance + self.added)
         return level
 
+    @property
+    def per_independent_mean(self) -> Real:
+        """Number of samples that determine a mean as well as one independent sample, shape (channel,)."""
+        rho = np.sqrt((self.per_independent - 1) / (self.per_independent + 1))
+        return np.asarray((1 + rho) / (1 - rho))
+
     def where(self, chosen: NDArray[np.bool_], other: SensorNoise) -> SensorNoise:
         """Return the noise of chosen channels, shape (channel,), that of all others taken from another one."""
         return SensorNoise(*(np.where(chosen, own, before) for own, before in zip(self, other, strict=True)))
