@@ -61,6 +61,13 @@ class RowForce(NamedTuple):
         """Name of the force law."""
         return self.element.law.name
 
+    @property
+    def knots_after(self) -> tuple[bool, bool]:
+        """Whether the knots of a damper's curve come after a rebound ratio, and after a width of rounding."""
+        kinds = [name.rpartition("_")[0] if name[0] in "vw" else name[0] for name in self.element.parameters[1:]]
+        is_curve = self.law == "damper-curve"
+        return is_curve and "r" in kinds, is_curve and any(name.startswith("w_k") for name in self.element.parameters)
+
 
 class RowElement(NamedTuple):
     """A linear element on a row.

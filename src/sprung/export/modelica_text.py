@@ -5,12 +5,18 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
 
+import numpy as np
+from numpy.typing import NDArray
+
 from sprung.export.equations import Equations, RowForce, Tyre
-from sprung.export.outputs import Output, Signal, identifier, of_wheel, outputs_of, road_inputs, sensor_problems
+from sprung.export.file import ExportedFile
+from sprung.export.outputs import Output, Signal, identifier, of_wheel, outputs_of, rest_of, road_inputs, sensor_problems
 from sprung.export.requests import resolve_load
 from sprung.errors import InputError
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import PARAMETERS, Load, Row, Sensor, Vehicle
+
+Array = NDArray[np.float64]
 
 _UNITS = str.maketrans({" ": ".", "^": ""})
 """From the units of results to those of Modelica: kg m^2 is kg.m2."""
@@ -19,9 +25,13 @@ _RELEASE = 0.1
 """s at which the model of a drop releases the vehicle."""
 
 
+_ZERO = 1e-12
+"""m and rad: position of rest that is a rounding error."""
+
+
 def modelica(
     vehicle: Vehicle, load: Load | None = None, *, sensors: Sequence[Sensor] = (), height: float = 0.05
-) -> str:
+) -> ExportedFile:
     """Return a vehicle as Modelica text: its equations of motion, and a drop from blocks that simulates them.
 
     Every linear and nonlinear element is an equation of its own, and every parameter a Modelica parameter. Tyres lift off.
@@ -40,7 +50,7 @@ def modelica(
 
     Returns
     -------
-    str
+    ExportedFile
         A package with the models ``Vehicle`` and ``Drop``.
 
     Raises
@@ -52,7 +62,8 @@ def modelica(
     outputs = outputs_of(vehicle, sensors)
     if problems := sensor_problems(sensors, outputs, f"Modelica of {vehicle.name}"):
         raise InputError(problems)
-    return "\n".join(_package(equations, outputs, height)) + "\n"
+    text = "\n".join(_package(equations, outputs, height)) + "\n"
+    return ExportedFile(f"{_package_name(vehicle.name)}.mo", text.encode())
 
 
 def _package(equations: Equations, outputs: Sequence[Output], height: float) -> Iterable[str]:
@@ -79,7 +90,8 @@ def _vehicle(equations: Equations, outputs: Sequence[Output]) -> Iterable[str]:
     """Yield the lines of the model of the vehicle."""
     coordinates, massive = equations.coordinates, equations.massive
     forced = equations.forced
-    rest = dict(zip(forced, equations.rest().tolist(), strict=True))
+    rest = equations.rest()
+    rest[np.abs(rest) < _ZERO] = 0.0
     for name, value in equations.vehicle.parameters.items():
         unit, meaning, *_ = PARAMETERS[name]
         yield f"parameter Real {name}(unit={_quoted(unit.translate(_UNITS))}) = {_number(value)} {_quoted(meaning)};"
@@ -93,7 +105,7 @@ def _vehicle(equations: Equations, outputs: Sequence[Output]) -> Iterable[str]:
         yield f"output Real {output.signal.name}{_about(output.signal)};"
     for i, coordinate in enumerate(coordinates):
         if coordinate in forced:
-            yield f"Real {coordinate}(start={_number(rest[coordinate])});"
+            yield f"Real {coordinate}(start={_number(rest[i])});"
             yield f"Real vel_{coordinate}(start=0);"
         if i < massive or coordinate not in forced:
             yield f"Real acc_{coordinate};"
@@ -178,23 +190,15 @@ def _balance(equations: Equations, coordinate: str, used: Sequence[int]) -> str:
     return f"{_joined(parts)} = {_joined(tyres)}"
 
 
-def _output(output: Output, equations: Equations, rest: Mapping[str, float]) -> str:
+def _output(output: Output, equations: Equations, rest: Array) -> str:
     if output.tyre is not None:
         return next(f"pressing_{tyre.coordinate}" for tyre in equations.tyres if tyre.wheel == output.tyre)
     parts = []
     for order, row in output.rows.items():
         own = Row(*(_known(row, equations)))
         parts.append(_sum_of(own, ("", "vel_", "acc_")[order]))
-        if order == 0:
-            values = equations.vehicle.parameters
-            at_rest = sum(value * rest[coordinate] for coordinate, value in own.constant.items())
-            at_rest += sum(
-                values[name] * value * rest[coordinate]
-                for name, slope in own.slopes.items()
-                for coordinate, value in slope.items()
-            )
-            parts.append(_number(-at_rest))
-    return _joined(parts)
+    at_rest = rest_of(output, equations.vehicle, rest)
+    return _joined([*parts, _number(-at_rest)] if at_rest else parts)
 
 
 def _known(row: Row, equations: Equations) -> tuple[dict[str, float], dict[str, dict[str, float]]]:
@@ -285,9 +289,8 @@ def _law(force: RowForce, position: int) -> str:
         case "rebound":
             return _rebound(parameters, travel, rate)
         case "damper-curve":
-            first = 1 + sum(not name.startswith(("v_", "q")) for name in parameters[1:])
-            is_rounded = any(name.startswith("w_k") for name in parameters)
-            return _damper_curve(parameters, rate, has_ratio=first > 1 + is_rounded, is_rounded=is_rounded)
+            has_ratio, is_rounded = force.knots_after
+            return _damper_curve(parameters, rate, has_ratio=has_ratio, is_rounded=is_rounded)
         case law:
             return _BY_TRAVEL[law](parameters, f"{travel} - travel_at_rest{force.row}", rate)
 

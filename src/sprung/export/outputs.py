@@ -6,10 +6,15 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from types import MappingProxyType
 
+import numpy as np
+from numpy.typing import NDArray
+
 from sprung.display import shown
 from sprung.errors import Problem
 from sprung.units import SI_UNITS
-from sprung.vehicle import STATIONS, Row, Sensor, Vehicle, Wheel, linear_elements
+from sprung.vehicle import STATIONS, Row, Rows, Sensor, Vehicle, Wheel, linear_elements
+
+Array = NDArray[np.float64]
 
 _BODY: Mapping[str, tuple[str, str, str]] = {
     "z_s": ("heave", "m", "rise of the sprung mass's centre of gravity"),
@@ -96,6 +101,13 @@ def outputs_of(vehicle: Vehicle, sensors: Iterable[Sensor] = ()) -> tuple[Output
         for one, row in moving
     ]
     return (*found, *(_sensed(sensor, vehicle) for sensor in sensors))
+
+
+def rest_of(output: Output, vehicle: Vehicle, rest: Array) -> float:
+    """Return what an output shows at rest of displacements there, X, shape (coordinate,); 0 for forces and derivatives."""
+    if 0 not in output.rows:
+        return 0.0
+    return float(Rows.of([output.rows[0]], tuple(vehicle.parameters)).at(list(vehicle.parameters.values()))[0] @ rest)
 
 
 def sensor_problems(sensors: Sequence[Sensor], outputs: Sequence[Output], where: str) -> list[Problem]:
