@@ -97,7 +97,9 @@ def linearised(
     G, directions = forces.rows.at(values), forces.directions(values)
     K, C = (matrix + (directions.T * rate) @ G for matrix, rate in zip((matrices.K, matrices.C), rates, strict=True))
     elements = tuple(
-        EquivalentElement(*_named(forces, equations.names, row), float(forces.weights[row] * k), float(forces.weights[row] * c))
+        EquivalentElement(
+            *_named(forces, equations.names, row), float(forces.weights[row] * k), float(forces.weights[row] * c)
+        )
         for row, (k, c) in enumerate(rates.T)
         if not forces.weightless[row]
     )

@@ -135,7 +135,9 @@ def _tables(equations: Equations, outputs: Sequence[Output]) -> Iterable[str]:
     yield f"#define IS_COUPLED {int(bool(massless & touched))}"
     yield f"#define GRAVITY {STANDARD_GRAVITY!r}"
     yield f"#define DEFAULT_TOLERANCE {_TOLERANCE!r}"
-    yield _table("double parameter_values[]", [f"{value!r} /* {name} */" for name, value in equations.vehicle.parameters.items()])
+    yield _table(
+        "double parameter_values[]", [f"{value!r} /* {name} */" for name, value in equations.vehicle.parameters.items()]
+    )
     yield _table("double heave[]", [repr(value) for value in equations.heave.values()])
     entries = [
         f"{{{i}, {at[coordinate]}, {number.get(name, -1)}, {value!r}}}"
@@ -151,7 +153,9 @@ def _tables(equations: Equations, outputs: Sequence[Output]) -> Iterable[str]:
         parameter = number[str(element.coefficient)] if is_parameter else -1
         elements.append(f"{{{element.law.upper()}, {row}, {parameter}, {factor!r}}}")
     yield _table("Element elements[]", elements)
-    forces = [_force(force, number, memories.index(i) if i in memories else -1) for i, force in enumerate(equations.forces)]
+    forces = [
+        _force(force, number, memories.index(i) if i in memories else -1) for i, force in enumerate(equations.forces)
+    ]
     yield _table("Force forces[]", forces or ["{0}"])
     yield _table("Tyre tyres[]", [_tyre(tyre, number, at) for tyre in equations.tyres])
     yield from _output_tables(equations, outputs, number, at)
@@ -210,11 +214,19 @@ def _comment(text: str) -> str:
 def _description(equations: Equations, outputs: Sequence[Output], name: str, token: str) -> str:
     """Return modelDescription.xml."""
     vehicle = equations.vehicle
-    roads = [Signal(of_wheel("road", wheel), "m", f"height of road or pad under wheel {wheel}") for wheel in equations.wheels]
-    rates = [Signal(of_wheel("road_rate", wheel), "m/s", f"rate of the road under wheel {wheel}") for wheel in equations.wheels]
+    roads = [
+        Signal(of_wheel("road", wheel), "m", f"height of road or pad under wheel {wheel}") for wheel in equations.wheels
+    ]
+    rates = [
+        Signal(of_wheel("road_rate", wheel), "m/s", f"rate of the road under wheel {wheel}")
+        for wheel in equations.wheels
+    ]
     variables = ['<Float64 name="time" valueReference="0" causality="independent" variability="continuous" unit="s"/>']
     lines: list[tuple[str, Signal]] = [
-        (f'causality="parameter" variability="fixed" start="{value!r}"', Signal(one, PARAMETERS[one].unit, PARAMETERS[one].meaning))
+        (
+            f'causality="parameter" variability="fixed" start="{value!r}"',
+            Signal(one, PARAMETERS[one].unit, PARAMETERS[one].meaning),
+        )
         for one, value in vehicle.parameters.items()
     ]
     lines += [('causality="input" start="0"', signal) for signal in (*roads, *rates)]
@@ -222,7 +234,7 @@ def _description(equations: Equations, outputs: Sequence[Output], name: str, tok
     units = dict.fromkeys(["s", *(signal.unit for _, signal in lines)])
     for reference, (kind, signal) in enumerate(lines, start=1):
         variables.append(
-            f"<Float64 name={quoteattr(signal.name)} valueReference=\"{reference}\" {kind} "
+            f'<Float64 name={quoteattr(signal.name)} valueReference="{reference}" {kind} '
             f"unit={quoteattr(signal.unit)} description={quoteattr(signal.meaning)}/>"
         )
     first = 1 + len(lines) - len(outputs)

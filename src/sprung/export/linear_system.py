@@ -97,7 +97,9 @@ class StateSpace:
             Output over input, in the units of both, shape (frequency, output, input).
         """
         omega = 2j * np.pi * np.asarray(frequencies, dtype=float)[:, None, None]
-        states = np.linalg.solve(omega * np.eye(len(self.A)) - self.A, np.broadcast_to(self.B, (len(omega), *self.B.shape)))
+        states = np.linalg.solve(
+            omega * np.eye(len(self.A)) - self.A, np.broadcast_to(self.B, (len(omega), *self.B.shape))
+        )
         return np.asarray(self.C @ states + self.D, dtype=np.complex128)
 
     def to_scipy(self) -> Any:
@@ -132,7 +134,9 @@ class StateSpace:
         if self.linearisation is not None:
             about |= {"amplitude": self.linearisation.amplitude, "frequency": self.linearisation.frequency}
         archive = io.BytesIO()
-        scipy_io.savemat(archive, {"A": self.A, "B": self.B, "C": self.C, "D": self.D, **named, **about}, oned_as="column")
+        scipy_io.savemat(
+            archive, {"A": self.A, "B": self.B, "C": self.C, "D": self.D, **named, **about}, oned_as="column"
+        )
         return ExportedFile(f"{identifier(self.name)}.mat", archive.getvalue(), self.notes)
 
 
@@ -268,7 +272,9 @@ def _output_rows(output: Output, equations: Equations, values: Array, Z: Array) 
     at = equations.wheels.index(output.tyre)
     tyre, place = equations.tyres[at], equations.vehicle.layout.wheels_at.start + at
     by_name = dict(zip(equations.names, values.tolist(), strict=True))
-    stiffness, damping = (sum(factor * by_name[name] for name, factor in part) for part in (tyre.stiffness, tyre.damping))
+    stiffness, damping = (
+        sum(factor * by_name[name] for name, factor in part) for part in (tyre.stiffness, tyre.damping)
+    )
     row: Array = -stiffness * Z[0, place] - damping * Z[1, place]
     inputs = row[len(row) - len(road_inputs(equations.vehicle)) :]
     inputs[at] += stiffness

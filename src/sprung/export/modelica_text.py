@@ -10,7 +10,16 @@ from numpy.typing import NDArray
 
 from sprung.export.equations import Equations, RowForce, Tyre
 from sprung.export.file import ExportedFile
-from sprung.export.outputs import Output, Signal, identifier, of_wheel, outputs_of, rest_of, road_inputs, sensor_problems
+from sprung.export.outputs import (
+    Output,
+    Signal,
+    identifier,
+    of_wheel,
+    outputs_of,
+    rest_of,
+    road_inputs,
+    sensor_problems,
+)
 from sprung.export.requests import resolve_load
 from sprung.errors import InputError
 from sprung.units import STANDARD_GRAVITY
@@ -332,7 +341,7 @@ def _number(value: float) -> str:
 
 
 def _about(signal: Signal) -> str:
-    return f'(unit={_quoted(_modelica_unit(signal.unit))}) {_quoted(signal.meaning)}'
+    return f"(unit={_quoted(_modelica_unit(signal.unit))}) {_quoted(signal.meaning)}"
 
 
 def _modelica_unit(unit: str) -> str:

@@ -133,7 +133,10 @@ def _moving(vehicle: Vehicle) -> list[tuple[Signal, Row]]:
     layout = vehicle.layout
     body = [(Signal(*_BODY[coordinate]), Row({coordinate: 1.0})) for coordinate in layout.body]
     wheels = [
-        (Signal(of_wheel("wheel", wheel), "m", f"rise of the wheel {_at(wheel)}"), Row({STATIONS[wheel].coordinate: 1.0}))
+        (
+            Signal(of_wheel("wheel", wheel), "m", f"rise of the wheel {_at(wheel)}"),
+            Row({STATIONS[wheel].coordinate: 1.0}),
+        )
         for wheel in layout.wheels
     ]
     return body + wheels
@@ -148,7 +151,7 @@ def _travels(vehicle: Vehicle) -> dict[Wheel, Row]:
 
 
 def _sensed(sensor: Sensor, vehicle: Vehicle) -> Output:
-    signal = Signal(identifier(sensor.channel), SI_UNITS[sensor.quantity], f"sensor {sensor.channel}")
+    signal = Signal(identifier(f"sensor_{sensor.channel}"), SI_UNITS[sensor.quantity], f"sensor {sensor.channel}")
     if sensor.quantity == "force":
         return Output(signal, tyre=sensor.pad)
     return Output(signal, sensor.rows(tuple(vehicle.parameters)))
