@@ -1,4 +1,4 @@
-"""CommonRoad: the parameters of its multi-body model that a drop test determines, as YAML; the others are left out and listed."""
+"""CommonRoad: the parameters of its multi-body model that a drop test determines, as YAML; the others are listed."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """Equations of motion as lists of elements and rows: what every simulation format is written from.
 
-The vehicle room has them as elements: a row, on which travel an element acts, and a law. The matrices follow from the lists, and
-so does any text that states them. Nothing here is a second model.
+The vehicle room has them as elements: a row, on whose travel an element acts, and a law. The matrices follow from the lists,
+and so does any text that states them. Nothing here is a second model.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Equivalent linearisation: rate and damping of nonlinear elements that move as a sine, by their describing functions.
 
-The travel of an element is x = x₀ + X sin ωt about its rest x₀. Of its force f the first harmonic remains, which a spring k and a
-damper c would have: k = 2/X · mean(f sin ωt) and c = 2/(ωX) · mean(f cos ωt) (Gelb and Vander Velde, Multiple-Input Describing
+The travel of an element is x = x₀ + X sin ωt about its rest x₀. Of its force f the first harmonic remains, which a spring k
+and a damper c would have: k = 2/X · mean(f sin ωt) and c = 2/(ωX) · mean(f cos ωt) (Gelb and Vander Velde, Multiple-Input Describing
 Functions and Nonlinear System Design, 1968, section 2.2).
 """
 

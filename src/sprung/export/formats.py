@@ -104,7 +104,7 @@ FORMATS: tuple[str, ...] = tuple(_FORMATS)
 _NEED_NO_VEHICLE = frozenset({"markdown", "latex"})
 
 
-def export(result: Result, to: str, options: ExportOptions = ExportOptions()) -> ExportedFile:  # noqa: B008 (frozen)
+def export(result: Result, to: str, options: ExportOptions = ExportOptions()) -> ExportedFile:
     """Return a result in a format of another program.
 
     Parameters

@@ -130,7 +130,11 @@ class StateSpace:
             for kind in ("state", "input", "output")
             for part in ("name", "unit", "meaning")
         }
-        about = {"vehicle": self.name, "load": self.load, "notes": np.array(self.notes, dtype=object)}
+        about: dict[str, Any] = {
+            "vehicle": self.name,
+            "load": self.load,
+            "notes": np.array(self.notes, dtype=object),
+        }
         if self.linearisation is not None:
             about |= {"amplitude": self.linearisation.amplitude, "frequency": self.linearisation.frequency}
         archive = io.BytesIO()
@@ -177,7 +181,7 @@ def state_space(
     Raises
     ------
     InputError
-        If there are nonlinear elements but no amplitude, a bump stop is met within it, or an output does not exist; all at once.
+        If there are nonlinear elements but no amplitude, a bump stop is met within it, or an output does not exist.
     """
     equations, where = Equations.of(vehicle, resolve_load(load)), f"state space of {vehicle.name}"
     available = outputs_of(vehicle, sensors)

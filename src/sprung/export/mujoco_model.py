@@ -1,8 +1,8 @@
 """MJCF: the vehicle as joints and tendons of MuJoCo; a row is a fixed tendon, exactly.
 
-Joints are the coordinates: body and wheels hang on the world, wheels move vertically. A fixed tendon is a linear function of the
-joints, so that springs and dampers are tendons with the rows of the vehicle room. Piecewise linear forces are actuators with a
-limited force, and so are tyres, which push and never pull: their control is the height of the road.
+Joints are the coordinates: body and wheels hang on the world, wheels move vertically. A fixed tendon is a linear function of
+the joints, so that springs and dampers are tendons with the rows of the vehicle room. Piecewise linear forces are actuators
+with a limited force, and so are tyres, which push and never pull: their control is the height of the road.
 """
 
 from __future__ import annotations
@@ -220,7 +220,8 @@ class _Model:
 
     def _row(self, position: int) -> Array:
         """Return a row at the values of the parameters, shape (coordinate,)."""
-        return Rows.of([self.equations.rows[position]], self.equations.names).at(self.equations.values)[0]
+        row: Array = Rows.of([self.equations.rows[position]], self.equations.names).at(self.equations.values)[0]
+        return row
 
     def _tendons(self) -> Iterator[str]:
         equations = self.equations
@@ -267,8 +268,9 @@ class _Model:
             for k, (constant, by_travel, by_rate, is_push) in enumerate(_pieces(force, values)):
                 limits = f"0 {_LIMIT}" if is_push else f"{-_LIMIT} 0"
                 # With a gain of 0 MuJoCo would take the damping for a damping ratio; the control stays 0.
+                name = f"{force.law}{i}_{k}"
                 yield (
-                    f'<general name="{force.law}{i}_{k}" tendon="row{force.row}" gaintype="fixed" gainprm="1" biastype="affine" '
+                    f'<general name="{name}" tendon="row{force.row}" gaintype="fixed" gainprm="1" biastype="affine" '
                     f'biasprm="{constant!r} {by_travel!r} {by_rate!r}" forcerange="{limits}"/>'
                 )
 

@@ -104,8 +104,8 @@ class Draws:
 def draws(result: Result, number: int = USUAL_NUMBER, *, seed: int | None = None) -> Draws:
     """Draw vehicles from the joint distribution of the estimated parameters.
 
-    The estimates are normally distributed in the coordinates in which they were fitted: the logarithms of parameters that must be
-    positive, the others themselves. Correlations, and what the uncertainty of known quantities adds, are in their covariance
+    The estimates are normally distributed in the coordinates in which they were fitted: the logarithms of parameters that must
+    be positive, the others themselves. Correlations, and what the uncertainty of known quantities adds, are in their covariance
     matrix. A parameter that cannot be negative is 0 where its draw is.
 
     Parameters
