@@ -155,7 +155,7 @@ class Equations:
         ]
         model = NonlinearModel.of(own, nonlinear, names, load, vehicle.heights)
         values = np.array(list(vehicle.parameters.values()))
-        empty = model.empty_sag(values)
+        empty = _empty_rest(model, values)
         origins = {"empty": empty, "loaded": empty + model.sag(values)}
         forces = []
         for element in nonlinear:
@@ -235,8 +235,19 @@ class Equations:
         blocks = tuple(wheel for wheel, height in zip(self.wheels, raised, strict=True) if height > 0)
         support = BlockSupport(self.load, blocks, float(raised.max(initial=0.0)))
         motion: Motion = simulate_nonlinear_drops(self.vehicle, [support], 1e-4, 2)[0]
-        model = self.nonlinear
-        return motion.displacement[:, 0] + model.sag(self.values) + model.empty_sag(self.values)
+        return motion.displacement[:, 0] + self.nonlinear.sag(self.values) + self.empty_rest
+
+    @property
+    def empty_rest(self) -> Array:
+        """Displacements of the empty vehicle at rest, as its linear elements have them, X, shape (coordinate,)."""
+        return _empty_rest(self.nonlinear, self.values)
+
+
+def _empty_rest(model: NonlinearModel, values: Array) -> Array:
+    # With the springs of the load, which belong to the equations of motion: seats, and its height above the support.
+    loaded = model.linear.matrices(values)
+    empty_mass = loaded.M - model.load.matrices(values).M
+    return -loaded.deflection(empty_mass @ model.linear.heave * model.gravity)
 
 
 class _DistinctRows:

@@ -1,8 +1,8 @@
 """Equivalent linearisation: rate and damping of nonlinear elements that move as a sine, by their describing functions.
 
 The travel of an element is x = x₀ + X sin ωt about its rest x₀. Of its force f the first harmonic remains, which a spring k
-and a damper c would have: k = 2/X · mean(f sin ωt) and c = 2/(ωX) · mean(f cos ωt) (Gelb and Vander Velde, Multiple-Input Describing
-Functions and Nonlinear System Design, 1968, section 2.2).
+and a damper c would have: k = 2/X · mean(f sin ωt) and c = 2/(ωX) · mean(f cos ωt) (Gelb and Vander Velde, Multiple-Input
+Describing Functions and Nonlinear System Design, 1968, section 2.2).
 """
 
 from __future__ import annotations
@@ -146,7 +146,7 @@ def _named(forces: NonlinearForces, names: Sequence[str], row: int) -> tuple[tup
 def _travels_at_rest(equations: Equations) -> Array:
     """Return the travel of each nonlinear element at rest, m, shape (row,)."""
     model, values = equations.nonlinear, equations.values
-    from_empty = equations.rest() - model.empty_sag(values)
+    from_empty = equations.rest() - equations.empty_rest
     return np.asarray(model.forces.rows.at(values) @ from_empty + model.travel_offsets(values)[0])
 
 

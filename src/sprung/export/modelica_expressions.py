@@ -42,11 +42,11 @@ def _damper_curve(parameters: Sequence[str], v: str, *, has_ratio: bool, is_roun
     rounding = further.pop(0) if is_rounded else ""
     knots, before = [], "1"
     for velocity, slope in zip(further[::2], further[1::2], strict=True):
-        beyond = f"(abs({v}) - {velocity})"
-        excess = f"max({beyond}, 0)"
+        above = f"(abs({v}) - {velocity})"
+        excess = f"max({above}, 0)"
         if rounding:
             at_rest = f"sqrt({velocity}^2 + {rounding}^2) - {velocity}"
-            excess = f"0.5*({beyond} + sqrt({beyond}^2 + {rounding}^2) - ({at_rest}))"
+            excess = f"0.5*({above} + sqrt({above}^2 + {rounding}^2) - ({at_rest}))"
         knots.append(f"{before}*(1 - {slope})*{excess}")
         before = f"{before}*{slope}"
     side = f"(if noEvent({v} > 0) then {ratio} else -1)"

@@ -1,0 +1,223 @@
+"""FMUs: valid for FMPy, and a drop in them is ours; their interface refuses what it cannot do."""
+
+from __future__ import annotations
+
+import io
+import shutil
+import zipfile
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from exported_vehicles import CASES, HEIGHT, RATE, SAMPLES, WITHIN, case, dropped, greatest_difference
+from sprung import export
+from sprung.export.functional_mockup import _built  # noqa: PLC2701 (whether this system has a compiler)
+from sprung.simulation import Bump, drive_over_bump
+from sprung.vehicle import EMPTY, TABLE_1_CAR, Readout, Sensor, Vehicle
+
+fmpy = pytest.importorskip("fmpy")
+if shutil.which("cc") is None:
+    pytest.skip("needs a compiler for C", allow_module_level=True)
+
+RELEASE = 0.05
+"""s after which the blocks are removed."""
+
+
+def names_at_wheels(vehicle: Vehicle, what: str) -> list[str]:
+    return [what if wheel == "wheel" else f"{what}_{wheel}" for wheel in vehicle.layout.wheels]
+
+
+def simulate(path: Path, roads: dict[str, NDArray[np.float64]], times: NDArray[np.float64], **options: Any) -> Any:
+    """Simulate an FMU on roads, held over each step."""
+    signal = np.zeros(len(times), dtype=[("time", float), *((name, float) for name in roads)])
+    signal["time"] = times
+    for name, road in roads.items():
+        signal[name] = road
+    step = float(times[1] - times[0])
+    return fmpy.simulate_fmu(
+        str(path), stop_time=float(times[-1]), step_size=step, output_interval=step, input=signal, **options
+    )
+
+
+def drop(path: Path, vehicle: Vehicle, **options: Any) -> Any:
+    """Simulate a drop from blocks under all wheels, from the release on."""
+    before = round(RELEASE * RATE)
+    times = np.arange(before + SAMPLES) / RATE
+    blocks = np.where(np.arange(len(times)) < before, HEIGHT, 0.0)
+    roads = {name: blocks if name.startswith("road_") or name == "road" else 0 * blocks for name in names_at_wheels(vehicle, "road")}
+    rates = {name: 0 * blocks for name in names_at_wheels(vehicle, "road_rate")}
+    return simulate(path, {**roads, **rates}, times, **options)[before:]
+
+
+def motions(found: Any, vehicle: Vehicle) -> NDArray[np.float64]:
+    body = {"z_s": "heave", "theta": "pitch", "phi": "roll"}
+    names = [*(body[one] for one in vehicle.layout.body), *names_at_wheels(vehicle, "wheel")]
+    return np.array([found[name] for name in names])
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_a_drop_is_ours(name: str, tmp_path: Path) -> None:
+    vehicle, load = case(name)
+    path = export.fmu(vehicle, load).save(tmp_path / "x.fmu")
+    assert greatest_difference(name, motions(drop(path, vehicle), vehicle)) < WITHIN / 10
+
+
+@pytest.mark.parametrize("name", ["car", "curve", "mount", "quarter", "attached"])
+def test_it_is_valid(name: str, tmp_path: Path) -> None:
+    validation = pytest.importorskip("fmpy.validation")
+    path = export.fmu(*case(name)).save(tmp_path / "x.fmu")
+    assert validation.validate_fmu(str(path)) == []
+
+
+def test_sensors_travels_and_forces_are_outputs(tmp_path: Path) -> None:
+    sensors = [
+        Sensor(channel="floor 1", on="body", position=(-0.4, 0.5, 0.6)),
+        Sensor(channel="rl", on="rl"),
+        Sensor(channel="rate", on="body", quantity="angular-rate", axis="pitch"),
+    ]
+    path = export.fmu(TABLE_1_CAR, sensors=sensors).save(tmp_path / "x.fmu")
+    found, motion = drop(path, TABLE_1_CAR), dropped("car")
+    names, values = tuple(TABLE_1_CAR.parameters), list(TABLE_1_CAR.parameters.values())
+    read = Readout.of(sensors, names).read(values, motion)
+    for name, ours in zip(("sensor_floor_1", "sensor_rl", "sensor_rate"), read, strict=True):
+        # The first sample is that of the release, before and after which the forces differ.
+        assert np.abs(found[name][1:] - ours[1:]).max() < WITHIN * np.ptp(ours)
+    forces = np.array([found[name] for name in names_at_wheels(TABLE_1_CAR, "tyre_force")])
+    assert forces.min() == 0.0  # in the air
+    weight = TABLE_1_CAR.total_mass * 9.80665
+    mass = np.array([TABLE_1_CAR.m_s, *2 * (TABLE_1_CAR.m_uf,), *2 * (TABLE_1_CAR.m_ur,)])
+    moving = np.vstack([motion.acceleration[:1], motion.acceleration[3:]])
+    # Newton's second law of the whole vehicle.
+    assert np.abs(forces.sum(axis=0) - weight - mass @ moving)[1:].max() < WITHIN * weight
+    travel = motion.displacement[0] - TABLE_1_CAR.a * motion.displacement[1] - motion.displacement[3]
+    assert np.abs(found["travel_fl"] - travel).max() < WITHIN * np.ptp(travel)
+
+
+def test_a_road_is_followed_with_its_rate(tmp_path: Path) -> None:
+    vehicle, _ = case("tyre-damping")
+    bump = Bump(height=0.02, length=1.0)
+    speed, step = 5.0, 1e-3
+    arcs = bump.arcs(speed)
+    times = np.arange(1000) * step
+    delays = {"fl": 0.0, "fr": 0.0, "rl": vehicle.wheelbase / speed, "rr": vehicle.wheelbase / speed}
+    passage = arcs[1].start
+
+    def road(delay: float, derivative: int) -> NDArray[np.float64]:
+        since = times - delay
+        shape = [np.sin, np.cos][derivative](np.pi / passage * since) * (np.pi / passage) ** derivative
+        return np.where((since >= 0) & (since < passage), bump.height * shape, 0.0)
+
+    roads = {f"road_{wheel}": road(delay, 0) for wheel, delay in delays.items()}
+    rates = {f"road_rate_{wheel}": road(delay, 1) for wheel, delay in delays.items()}
+    path = export.fmu(vehicle).save(tmp_path / "x.fmu")
+    found = simulate(path, {**roads, **rates}, times)
+    ours = drive_over_bump(vehicle, EMPTY, vehicle.layout.wheels, speed=speed, bump=bump).motion(step, len(times))
+    assert np.abs(found["heave"] - ours.displacement[0]).max() < WITHIN * np.ptp(ours.displacement[0])
+    assert np.abs(found["wheel_rl"] - ours.displacement[5]).max() < WITHIN * np.ptp(ours.displacement[5])
+
+
+def test_parameters_can_be_set(tmp_path: Path) -> None:
+    other = TABLE_1_CAR.with_values(c_sf=900.0, m_s=1500.0)
+    exported, set_later = (export.fmu(one).save(tmp_path / f"{i}.fmu") for i, one in enumerate((other, TABLE_1_CAR)))
+    ours, found = drop(exported, other), drop(set_later, other, start_values={"c_sf": 900.0, "m_s": 1500.0})
+    for name in ("heave", "pitch", "wheel_fl"):
+        # Displacements count from the rest of the vehicle as it was exported.
+        difference = (found[name] - found[name][0]) - (ours[name] - ours[name][0])
+        assert np.abs(difference).max() < 1e-6 * np.ptp(ours[name])
+
+
+def test_equal_vehicles_give_equal_files() -> None:
+    assert export.fmu(TABLE_1_CAR).content == export.fmu(TABLE_1_CAR).content
+
+
+def test_without_a_compiler_the_source_is_there(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PATH", "")
+    monkeypatch.delenv("CC", raising=False)
+    file = export.fmu(TABLE_1_CAR)
+    with zipfile.ZipFile(io.BytesIO(file.content)) as archive:
+        names = archive.namelist()
+    assert {"sources/fmu.c", "sources/vehicle.c", "sources/model.h", "sources/buildDescription.xml"} < set(names)
+    assert not [name for name in names if name.startswith("binaries")]
+    assert "source in C only" in file.notes[0]
+    monkeypatch.setenv("CC", "no-such-compiler")
+    assert "source in C only" in export.fmu(TABLE_1_CAR).notes[0]
+    assert _built({"fmu.c": ""}) is None
+
+
+class Instance:
+    """An instance of an FMU, by its C interface."""
+
+    def __init__(self, path: Path, folder: Path) -> None:
+        unzipped = fmpy.extract(str(path), str(folder))
+        self.description = fmpy.read_model_description(str(path))
+        self.references = {one.name: one.valueReference for one in self.description.modelVariables}
+        slave = pytest.importorskip("fmpy.fmi3").FMU3Slave
+        self.logged: list[str] = []
+        self.slave: Any = slave(
+            guid=self.description.guid,
+            unzipDirectory=unzipped,
+            modelIdentifier=self.description.coSimulation.modelIdentifier,
+            instanceName="x",
+        )
+
+    def get(self, name: str) -> float:
+        return float(self.slave.getFloat64([self.references[name]])[0])
+
+    def set(self, name: str, value: float) -> None:
+        self.slave.setFloat64([self.references[name]], [value])
+
+
+@pytest.fixture
+def instance(tmp_path: Path) -> Instance:
+    made = Instance(export.fmu(TABLE_1_CAR).save(tmp_path / "x.fmu"), tmp_path / "unzipped")
+    made.slave.instantiate()
+    made.slave.enterInitializationMode()
+    return made
+
+
+def test_a_state_can_be_kept(instance: Instance) -> None:
+    instance.set("road_fl", 0.02)
+    instance.slave.exitInitializationMode()
+    instance.set("road_fl", 0.0)
+    kept = instance.slave.getFMUState()
+    instance.slave.doStep(currentCommunicationPoint=0.0, communicationStepSize=0.1)
+    first = instance.get("wheel_fl")
+    instance.slave.setFMUState(kept)
+    instance.slave.doStep(currentCommunicationPoint=0.0, communicationStepSize=0.1)
+    assert instance.get("wheel_fl") == first != 0.0
+    instance.slave.freeFMUState(kept)
+    instance.slave.terminate()
+    instance.slave.reset()
+    instance.slave.enterInitializationMode()
+    instance.slave.exitInitializationMode()
+    assert abs(instance.get("wheel_fl")) < 1e-9  # at rest on flat road again
+
+
+@pytest.mark.parametrize(("name", "value"), [("heave", 1.0), ("time", 1.0), ("road_fl", float("nan"))])
+def test_what_cannot_be_set_is_refused(instance: Instance, name: str, value: float) -> None:
+    with pytest.raises(Exception, match="fmi3SetFloat64"):
+        instance.set(name, value)
+
+
+def test_parameters_are_fixed_once_it_runs(instance: Instance) -> None:
+    instance.set("m_s", 1400.0)
+    instance.slave.exitInitializationMode()
+    with pytest.raises(Exception, match="fmi3SetFloat64"):
+        instance.set("m_s", 1500.0)
+
+
+def test_a_vehicle_without_rest_is_refused(instance: Instance) -> None:
+    for axle in "fr":
+        instance.set(f"k_s{axle}", 0.0)
+    with pytest.raises(Exception, match="fmi3ExitInitializationMode"):
+        instance.slave.exitInitializationMode()
+
+
+def test_a_foreign_token_makes_no_instance(tmp_path: Path) -> None:
+    made = Instance(export.fmu(TABLE_1_CAR).save(tmp_path / "x.fmu"), tmp_path / "unzipped")
+    made.slave.guid = "another"
+    with pytest.raises(Exception, match=r"[Ii]nstantiate"):
+        made.slave.instantiate()
