@@ -84,7 +84,7 @@ def test_tables_hold_all_digits(result: Result) -> None:
     pandas = pytest.importorskip("pandas")
     parquet = pytest.importorskip("pyarrow.parquet")
     drawn = export.draws(result, 7, seed=1)
-    assert np.array_equal(pandas.read_csv(io.BytesIO(drawn.csv().content), float_precision="round_trip").to_numpy(), drawn.values)
+    assert np.array_equal(pandas.read_csv(io.BytesIO(drawn.csv().content)).to_numpy(), drawn.values)
     table = parquet.read_table(io.BytesIO(drawn.parquet().content))
     assert np.array_equal(table.to_pandas().to_numpy(), drawn.values)
     assert table.schema.field("k_sf").metadata == {b"unit": b"N/m"}

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from exported_vehicles import CASES, HEIGHT, RATE, SAMPLES, WITHIN, case, dropped, greatest_difference
 from sprung import export
-from sprung.export.functional_mockup import _built  # noqa: PLC2701 (whether this system has a compiler)
+from sprung.export.functional_mockup import _built
 from sprung.simulation import Bump, drive_over_bump
 from sprung.vehicle import EMPTY, TABLE_1_CAR, Readout, Sensor, Vehicle
 
@@ -47,8 +47,11 @@ def drop(path: Path, vehicle: Vehicle, **options: Any) -> Any:
     before = round(RELEASE * RATE)
     times = np.arange(before + SAMPLES) / RATE
     blocks = np.where(np.arange(len(times)) < before, HEIGHT, 0.0)
-    roads = {name: blocks if name.startswith("road_") or name == "road" else 0 * blocks for name in names_at_wheels(vehicle, "road")}
-    rates = {name: 0 * blocks for name in names_at_wheels(vehicle, "road_rate")}
+    roads = {
+        name: blocks if name.startswith("road_") or name == "road" else 0 * blocks
+        for name in names_at_wheels(vehicle, "road")
+    }
+    rates = dict.fromkeys(names_at_wheels(vehicle, "road_rate"), 0 * blocks)
     return simulate(path, {**roads, **rates}, times, **options)[before:]
 
 
@@ -101,7 +104,7 @@ def test_a_road_is_followed_with_its_rate(tmp_path: Path) -> None:
     bump = Bump(height=0.02, length=1.0)
     speed, step = 5.0, 1e-3
     arcs = bump.arcs(speed)
-    times = np.arange(1000) * step
+    times: NDArray[np.float64] = np.asarray(np.arange(1000) * step)
     delays = {"fl": 0.0, "fr": 0.0, "rl": vehicle.wheelbase / speed, "rr": vehicle.wheelbase / speed}
     passage = arcs[1].start
 

@@ -32,7 +32,8 @@ def simulate(text: str, folder: Path) -> Any:
 def sampled(found: Any, name: str) -> NDArray[np.float64]:
     """Return an output from the release on."""
     times = RELEASE + np.arange(SAMPLES) / RATE
-    return np.interp(times, np.array(found.time), np.array(found[f"vehicle.{name}"]))
+    values = np.interp(times, np.array(found.time), np.array(found[f"vehicle.{name}"]))
+    return np.asarray(values, dtype=np.float64)
 
 
 def motions(found: Any, vehicle: Vehicle) -> NDArray[np.float64]:

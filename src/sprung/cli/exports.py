@@ -68,7 +68,7 @@ def export(
     """Write the identified vehicle for another program: state space, simulation models, draws, tables."""
     with working("writing the export"):
         found: Any = sprung.load(results, series=False)
-        is_parquet = output is not None and output.suffix == ".parquet"
+        is_parquet = to == "draws" and output is not None and output.suffix == ".parquet"
         options = sprung.export.ExportOptions(
             load=load,
             amplitude=amplitude,

@@ -121,13 +121,13 @@ def stop_problems(equations: Equations, amplitude: float, where: str) -> list[Pr
             row = Rows.of([force.element.row], equations.names).at(equations.values)[0]
             left = values[clearance] + float(row @ rest) - force.offset
             if values[stiffness] and left < amplitude:
-                found[stiffness] = Problem(
-                    where,
-                    f"bump stops ({stiffness}) that are met {1e3 * left:.3g} mm from rest, within the amplitude of "
-                    f"{1e3 * amplitude:.3g} mm",
-                    "elements that a spring and a damper can replace",
-                    f"Give an amplitude below {1e3 * left:.3g} mm, or export to modelica or fmu, which have bump stops.",
-                )
+                met = f"that are met {1e3 * left:.3g} mm from rest, within the amplitude of {1e3 * amplitude:.3g} mm"
+                smaller = f"Give an amplitude below {1e3 * left:.3g} mm, or export"
+                if left <= 0:
+                    met, smaller = "on which the vehicle rests", "Export"
+                expected = "elements that a spring and a damper can replace"
+                do = f"{smaller} to modelica or fmu, which have bump stops."
+                found[stiffness] = Problem(where, f"bump stops ({stiffness}) {met}", expected, do)
     return list(found.values())
 
 
@@ -152,23 +152,20 @@ def _travels_at_rest(equations: Equations) -> Array:
 
 def _describing_functions(forces: NonlinearForces, values: Array, rest: Array, amplitude: float, omega: float) -> Array:
     """Return stiffness and damping of each row, N/m and N s/m, shape (2, row)."""
-    angles = 2 * np.pi * np.arange(_SAMPLES + 1) / _SAMPLES
-    travels = rest + amplitude * np.sin(angles)[:, None]
-    speeds = amplitude * omega * np.cos(angles)[:, None] * np.ones_like(rest)
-    parameters = forces.parameters(values)
-
-    def period(memory: Array) -> tuple[Array, Array]:
-        """Return the sums of the forces times sine and cosine over a period, and the memories at its end."""
-        sums = np.zeros((2, forces.number))
-        for k in range(1, len(angles)):
-            given = ElementInput(travels[k], speeds[k], travels[k] - travels[k - 1], memory)
-            found = forces.evaluate(parameters, given)
-            sums += np.outer((np.sin(angles[k]), np.cos(angles[k])), found.force)
-            memory = found.memory
-        return sums, memory
-
+    angles = 2 * np.pi * np.arange(_SAMPLES + 1)[:, None] / _SAMPLES
+    travels = rest + amplitude * np.sin(angles)
+    speeds = amplitude * omega * np.cos(angles) * np.ones_like(rest)
+    parameters, nothing = forces.parameters(values), np.zeros((_SAMPLES, forces.memories))
+    given = ElementInput(travels[1:], speeds[1:], np.diff(travels, axis=0), nothing)
+    step = forces.evaluate(parameters, given)
+    memory, gain = np.zeros(forces.memories), np.ones(forces.memories)
+    for constant, slope in zip(step.memory, step.memory_by_memory, strict=True):
+        memory, gain = constant + slope * memory, slope * gain
     # The memory after a period is an affine function of that before it, which gives that of the periodic motion.
-    after_zero, after_one = period(np.zeros(forces.memories))[1], period(np.ones(forces.memories))[1]
-    periodic = after_zero / np.maximum(1.0 - (after_one - after_zero), np.finfo(float).eps)
-    sums, _ = period(periodic)
-    return np.asarray(sums * (2 / _SAMPLES / amplitude) / np.array([[1.0], [omega]]))
+    memory = memory / np.maximum(1.0 - gain, np.finfo(float).eps)
+    memories = nothing.copy()
+    for k, (constant, slope) in enumerate(zip(step.memory, step.memory_by_memory, strict=True)):
+        memories[k], memory = memory, constant + slope * memory
+    force = forces.evaluate(parameters, given._replace(memory=memories)).force
+    mean = [(wave * force).mean(axis=0) for wave in (np.sin(angles[1:]), np.cos(angles[1:]))]
+    return np.asarray(2 / amplitude * np.array([mean[0], mean[1] / omega]))
