@@ -38,6 +38,7 @@ VEHICLES: Mapping[str, Vehicle] = {
     "car": TABLE_1_CAR,
     "tyre-damping": _car(**_both(c_t=60.0)),
     "friction": _car(**_RUBBING),
+    "front-friction": _car(F_f=60.0, s_f=2e5),
     "load-friction": _car(**_RUBBING, **_both(u_=0.05)),
     "rebound": _car(**_both(r_=1.8)),
     "curve": _car(**_both(r_=1.8), **_KNEES),

@@ -97,7 +97,8 @@ def commonroad(vehicle: Vehicle, load: Load | None = None, *, approximate: bool 
         raise InputError([Problem(where, f"a {vehicle.model} model", "a whole vehicle", do)])
     is_axle_of_wheels = all(vehicle.parameters.get(name, 1.0) == 1.0 for name in ("n_f", "n_r", *_APART_SHARES))
     lacking = {term: text for term, text in _LACKING.items() if term != "rigid-axle" or not is_axle_of_wheels}
-    problems, notes = _other_differences(vehicle, load, where, approximate)
+    kept = without_terms(vehicle, load, frozenset(lacking.keys() & {*vehicle.extras}))
+    problems, notes = _other_differences(kept, load, where, approximate)
     try:
         notes = check_terms(vehicle, lacking, where, approximate) + notes
     except InputError as error:
@@ -105,7 +106,6 @@ def commonroad(vehicle: Vehicle, load: Load | None = None, *, approximate: bool 
     if problems:
         raise InputError(problems)
     added = {axle: vehicle.parameters.get(f"m_x{axle}", 0.0) for axle in "fr"}
-    kept = without_terms(vehicle, load, frozenset(lacking.keys() & {*vehicle.extras}))
     entries = _entries(kept, load, added)
     lines = [
         f"# {_line(vehicle.name)}, {_line(load.name)}: parameters for commonroad-vehicle-models, written by sprung.",

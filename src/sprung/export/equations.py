@@ -159,7 +159,7 @@ class Equations:
         origins = {"empty": empty, "loaded": empty + model.sag(values)}
         forces = []
         for element in nonlinear:
-            if element.law.name != _TYRE_CURVE:
+            if element.law.name != _TYRE_CURVE and element.weight != 0.0:
                 row = Rows.of([element.row], names).at(values)[0]
                 offset = float(row @ origins[element.origin])
                 forces.append(RowForce(element, rows.position(_within(element.row, known)), offset))

@@ -164,7 +164,9 @@ def _derivatives(equations: Equations) -> Iterable[str]:
     for i in _memories(equations):
         force = equations.forces[i]
         limit, stiffness = force.element.parameters[-2:]
-        moving, length = f"rate{force.row}", f"max(abs({limit})/{stiffness}, 1e-7)"
+        # Without a force the memory has no effect, and would only shorten the steps of a solver.
+        length = f"(if {force.element.parameters[0]} > 0 then max({limit}/{stiffness}, 1e-7) else 1)"
+        moving = f"rate{force.row}"
         yield f"der(memory{i}) = ({moving} - abs({moving})*memory{i})/{length};"
 
 

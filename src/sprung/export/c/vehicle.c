@@ -230,6 +230,7 @@ static void derivative(Vehicle *vehicle, double time, const double *state, doubl
     const double *V = state + N_FORCED, *memory = V + N_MASSIVE;
     double velocity[N_FORCED];
     highest_derivatives(vehicle, time, state, vehicle->highest);
+    memset(rate, 0, sizeof(double) * STATES);
     for (int i = 0; i < N_FORCED; i++) rate[i] = velocity[i] = i < N_MASSIVE ? V[i] : vehicle->highest[i];
     for (int i = 0; i < N_MASSIVE; i++) rate[N_FORCED + i] = vehicle->highest[i];
     for (int e = 0; e < N_FORCES; e++) {
@@ -237,6 +238,8 @@ static void derivative(Vehicle *vehicle, double time, const double *state, doubl
         if (one->memory < 0) continue;
         double moving = dot(vehicle->row[one->row], velocity, N_FORCED);
         double limit = value(vehicle, one->parameters[one->count - 2]);
+        /* Without a force the memory has no effect, and would only shorten the steps. */
+        if (value(vehicle, one->parameters[0]) == 0.0) continue;
         double length = fmax(fabs(limit) / value(vehicle, one->parameters[one->count - 1]), 1e-7);
         rate[N_FORCED + N_MASSIVE + one->memory] = (moving - fabs(moving) * memory[one->memory]) / length;
     }
