@@ -38,7 +38,9 @@ def test_it_is_written_beside_the_results_otherwise(results: Path) -> None:
 def test_draws_are_csv_or_parquet_by_the_name(results: Path, tmp_path: Path) -> None:
     parquet = pytest.importorskip("pyarrow.parquet")
     for name in ("draws.csv", "draws.parquet"):
-        assert run("export", results, "--to", "draws", "--number", "5", "--seed", "1", "-o", tmp_path / name).status == 0
+        assert (
+            run("export", results, "--to", "draws", "--number", "5", "--seed", "1", "-o", tmp_path / name).status == 0
+        )
     table = np.loadtxt(tmp_path / "draws.csv", delimiter=",", skiprows=1)
     assert np.array_equal(table, parquet.read_table(tmp_path / "draws.parquet").to_pandas().to_numpy())
     assert table.shape == (5, 15)

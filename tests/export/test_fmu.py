@@ -10,62 +10,37 @@ from typing import Any
 
 import numpy as np
 import pytest
+from exported_vehicles import CASES, WITHIN, case, dropped, greatest_difference
 from numpy.typing import NDArray
+from other_programs import drop_fmu, moving_names, names_at_wheels, simulate_fmu
 
-from exported_vehicles import CASES, HEIGHT, RATE, SAMPLES, WITHIN, case, dropped, greatest_difference
+from marks import all_the_others_are_long
 from sprung import export
 from sprung.export.functional_mockup import _built
 from sprung.simulation import Bump, drive_over_bump
-from sprung.vehicle import EMPTY, TABLE_1_CAR, Readout, Sensor, Vehicle
+from sprung.vehicle import EMPTY, TABLE_1_CAR, Readout, Sensor
 
 fmpy = pytest.importorskip("fmpy")
 if shutil.which("cc") is None:
     pytest.skip("needs a compiler for C", allow_module_level=True)
 
-RELEASE = 0.05
-"""s after which the blocks are removed."""
 
-
-def names_at_wheels(vehicle: Vehicle, what: str) -> list[str]:
-    return [what if wheel == "wheel" else f"{what}_{wheel}" for wheel in vehicle.layout.wheels]
-
-
-def simulate(path: Path, roads: dict[str, NDArray[np.float64]], times: NDArray[np.float64], **options: Any) -> Any:
-    """Simulate an FMU on roads, held over each step."""
-    signal = np.zeros(len(times), dtype=[("time", float), *((name, float) for name in roads)])
-    signal["time"] = times
-    for name, road in roads.items():
-        signal[name] = road
-    step = float(times[1] - times[0])
-    return fmpy.simulate_fmu(
-        str(path), stop_time=float(times[-1]), step_size=step, output_interval=step, input=signal, **options
-    )
-
-
-def drop(path: Path, vehicle: Vehicle, **options: Any) -> Any:
-    """Simulate a drop from blocks under all wheels, from the release on."""
-    before = round(RELEASE * RATE)
-    times = np.arange(before + SAMPLES) / RATE
-    blocks = np.where(np.arange(len(times)) < before, HEIGHT, 0.0)
-    roads = {
-        name: blocks if name.startswith("road_") or name == "road" else 0 * blocks
-        for name in names_at_wheels(vehicle, "road")
-    }
-    rates = dict.fromkeys(names_at_wheels(vehicle, "road_rate"), 0 * blocks)
-    return simulate(path, {**roads, **rates}, times, **options)[before:]
-
-
-def motions(found: Any, vehicle: Vehicle) -> NDArray[np.float64]:
-    body = {"z_s": "heave", "theta": "pitch", "phi": "roll"}
-    names = [*(body[one] for one in vehicle.layout.body), *names_at_wheels(vehicle, "wheel")]
-    return np.array([found[name] for name in names])
-
-
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("name", all_the_others_are_long(CASES))
 def test_a_drop_is_ours(name: str, tmp_path: Path) -> None:
     vehicle, load = case(name)
-    path = export.fmu(vehicle, load).save(tmp_path / "x.fmu")
-    assert greatest_difference(name, motions(drop(path, vehicle), vehicle)) < WITHIN / 10
+    moved = drop_fmu(export.fmu(vehicle, load).save(tmp_path / "x.fmu"), vehicle)
+    assert greatest_difference(name, np.array([moved[one] for one in moving_names(vehicle)])) < WITHIN / 10
+
+
+@pytest.mark.long
+def test_fmpy_builds_it_from_its_source(tmp_path: Path) -> None:
+    build = pytest.importorskip("fmpy.build")
+    vehicle, load = case("curve")
+    folder = tmp_path / "unzipped"
+    fmpy.extract(str(export.fmu(vehicle, load, build=False).save(tmp_path / "x.fmu")), str(folder))
+    build.build_platform_binary(str(folder))
+    moved = drop_fmu(folder, vehicle)
+    assert greatest_difference("curve", np.array([moved[one] for one in moving_names(vehicle)])) < WITHIN / 10
 
 
 @pytest.mark.parametrize("name", ["car", "curve", "mount", "quarter", "attached"])
@@ -82,7 +57,7 @@ def test_sensors_travels_and_forces_are_outputs(tmp_path: Path) -> None:
         Sensor(channel="rate", on="body", quantity="angular-rate", axis="pitch"),
     ]
     path = export.fmu(TABLE_1_CAR, sensors=sensors).save(tmp_path / "x.fmu")
-    found, motion = drop(path, TABLE_1_CAR), dropped("car")
+    found, motion = drop_fmu(path, TABLE_1_CAR), dropped("car")
     names, values = tuple(TABLE_1_CAR.parameters), list(TABLE_1_CAR.parameters.values())
     read = Readout.of(sensors, names).read(values, motion)
     for name, ours in zip(("sensor_floor_1", "sensor_rl", "sensor_rate"), read, strict=True):
@@ -116,7 +91,7 @@ def test_a_road_is_followed_with_its_rate(tmp_path: Path) -> None:
     roads = {f"road_{wheel}": road(delay, 0) for wheel, delay in delays.items()}
     rates = {f"road_rate_{wheel}": road(delay, 1) for wheel, delay in delays.items()}
     path = export.fmu(vehicle).save(tmp_path / "x.fmu")
-    found = simulate(path, {**roads, **rates}, times)
+    found = simulate_fmu(path, {**roads, **rates}, times)
     ours = drive_over_bump(vehicle, EMPTY, vehicle.layout.wheels, speed=speed, bump=bump).motion(step, len(times))
     assert np.abs(found["heave"] - ours.displacement[0]).max() < WITHIN * np.ptp(ours.displacement[0])
     assert np.abs(found["wheel_rl"] - ours.displacement[5]).max() < WITHIN * np.ptp(ours.displacement[5])
@@ -125,7 +100,7 @@ def test_a_road_is_followed_with_its_rate(tmp_path: Path) -> None:
 def test_parameters_can_be_set(tmp_path: Path) -> None:
     other = TABLE_1_CAR.with_values(c_sf=900.0, m_s=1500.0)
     exported, set_later = (export.fmu(one).save(tmp_path / f"{i}.fmu") for i, one in enumerate((other, TABLE_1_CAR)))
-    ours, found = drop(exported, other), drop(set_later, other, start_values={"c_sf": 900.0, "m_s": 1500.0})
+    ours, found = drop_fmu(exported, other), drop_fmu(set_later, other, start_values={"c_sf": 900.0, "m_s": 1500.0})
     for name in ("heave", "pitch", "wheel_fl"):
         # Displacements count from the rest of the vehicle as it was exported.
         difference = (found[name] - found[name][0]) - (ours[name] - ours[name][0])

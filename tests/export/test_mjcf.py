@@ -6,9 +6,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
+from exported_vehicles import CASES, WITHIN, case, greatest_difference
+from other_programs import drop_mjcf
 
-from exported_vehicles import CASES, RATE, SAMPLES, WITHIN, case, greatest_difference
+from marks import all_the_others_are_long
 from sprung import export
 from sprung.errors import InputError
 from sprung.vehicle import TABLE_1_CAR, Readout, Sensor, Vehicle
@@ -40,23 +41,10 @@ def model_of(text: str) -> tuple[Any, Any]:
     return model, mujoco.MjData(model)
 
 
-def drop(text: str, samples: int = SAMPLES) -> NDArray[np.float64]:
-    """Return the positions of all joints in a drop, shape (joint, time)."""
-    model, data = model_of(text)
-    mujoco.mj_resetDataKeyframe(model, data, mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_KEY, "drop"))
-    every = round(1 / RATE / model.opt.timestep)
-    positions = [data.qpos.copy()]
-    for _ in range(samples - 1):
-        for _ in range(every):
-            mujoco.mj_step(model, data)
-        positions.append(data.qpos.copy())
-    return np.array(positions).T
-
-
-@pytest.mark.parametrize("name", WHOLE)
+@pytest.mark.parametrize("name", all_the_others_are_long(WHOLE))
 def test_a_drop_is_ours(name: str) -> None:
     vehicle, load = case(name)
-    moved = drop(export.mjcf(vehicle, load).text)[: len(vehicle.layout.coordinates)]
+    moved = drop_mjcf(export.mjcf(vehicle, load).text)[: len(vehicle.layout.coordinates)]
     assert greatest_difference(name, moved) < WITHIN
 
 
@@ -80,7 +68,7 @@ def test_what_mujoco_lacks_is_refused_or_approximated(name: str) -> None:
     file = export.mjcf(vehicle, load, approximate=True)
     assert len(file.notes) == len(caught.value.problems)
     assert all(note in file.text for note in file.notes)
-    moved = drop(file.text)
+    moved = drop_mjcf(file.text)
     assert np.isfinite(moved).all()
     assert np.ptp(moved[0]) > 0.01
 

@@ -97,6 +97,9 @@ def case(name: str) -> tuple[Vehicle, Load]:
 CASES = (*VEHICLES, "seated")
 """Names of all."""
 
+USUAL = ("car", "curve", "load-friction", "tyre-curve", "mount", "left-right", "heights", "quarter", "seated")
+"""Names of some that have most of what the others have."""
+
 
 def is_linear(vehicle: Vehicle) -> bool:
     """Return whether a vehicle has linear elements only, but for its tyres, which lift off."""
