@@ -95,8 +95,8 @@ computed in time steps of 0.2 ms at most.
 
 The greatest difference of heave, pitch, roll and the rise of the wheels, in percent of the range of the motion; of pitch and
 roll in percent of the range of the heave in m, where that is larger. The worst are {worst["modelica"]:.2g} % in Modelica,
-{worst["fmu"]:.2g} % in the FMU and {worst["mjcf"]:.2g} % in MuJoCo; the {WANTED:g} % that are required {met}. *Refused* vehicles
-have terms that MuJoCo has not; they are exported only as an approximation.
+{worst["fmu"]:.2g} % in the FMU and {worst["mjcf"]:.2g} % in MuJoCo; the {WANTED:g} % that are required {met}. *Refused*
+vehicles have terms that MuJoCo has not; they are exported only as an approximation.
 
 {table(["vehicle", *FORMATS], rows)}
 
