@@ -43,9 +43,11 @@ VEHICLES: Mapping[str, Vehicle] = {
     "rebound": _car(**_both(r_=1.8)),
     "curve": _car(**_both(r_=1.8), **_KNEES),
     "rounded": _car(**_KNEES, **_both(w_k=0.03)),
+    "degressive": _car(**_both(p_=-1.0, e_l=2.0, g_=15.0)),
     "progressive": _car(**_both(p_=3.0)),
     "air": _car(**_both(e_=2.5)),
     "levelled-air": _car(**_both(e_l=2.5, g_=15.0)),
+    "air-and-stop": _car(**_both(e_=1.0, e_l=2.0, g_=15.0, k_b=6e4, x_b=0.03)),
     "bump-stop": _car(**_both(k_b=6e4, x_b=0.03)),
     "tyre-curve": _car(**_both(h_t=5.0)),
     "mount": _car(**_both(k_d=4e5, c_d=50.0), r_f=1.5, r_r=1.5),
@@ -78,6 +80,7 @@ VEHICLES: Mapping[str, Vehicle] = {
 LOADS: Mapping[str, Load] = {
     "load-friction": LUGGAGE,
     "levelled-air": LUGGAGE,
+    "air-and-stop": LUGGAGE,
     "progressive": LUGGAGE,
     "tyre-curve": LUGGAGE,
     "heights": LUGGAGE,
@@ -97,7 +100,18 @@ def case(name: str) -> tuple[Vehicle, Load]:
 CASES = (*VEHICLES, "seated")
 """Names of all."""
 
-USUAL = ("car", "curve", "load-friction", "tyre-curve", "mount", "left-right", "heights", "quarter", "seated")
+USUAL = (
+    "car",
+    "curve",
+    "air-and-stop",
+    "load-friction",
+    "tyre-curve",
+    "mount",
+    "left-right",
+    "heights",
+    "quarter",
+    "seated",
+)
 """Names of some that have most of what the others have."""
 
 

@@ -23,6 +23,8 @@ LACKING = {
     "rounded": "w_kf",
     "air": "e_f",
     "levelled-air": "e_lf",
+    "air-and-stop": "e_f",
+    "degressive": "e_lf",
     "tyre-curve": "h_tf",
     "mount": "k_df",
     "zener": "k_zf",

@@ -51,6 +51,7 @@ def model_tables(equations: Equations, outputs: Sequence[Output]) -> Iterable[st
         "double parameter_values[]", [f"{value!r} /* {name} */" for name, value in equations.vehicle.parameters.items()]
     )
     yield _table("double heave[]", [repr(value) for value in equations.heave.values()])
+    yield _table("double rest[]", [repr(value) for value in equations.rest().tolist()])
     entries = [
         f"{{{i}, {at[coordinate]}, {number.get(name, -1)}, {value!r}}}"
         for i, row in enumerate(equations.rows)

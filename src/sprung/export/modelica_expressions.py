@@ -75,7 +75,7 @@ def law_expression(force: RowForce, position: int) -> str:
             has_ratio, is_rounded = force.knots_after
             return _damper_curve(parameters, rate, has_ratio=has_ratio, is_rounded=is_rounded)
         case law:
-            return BY_TRAVEL[law](parameters, f"{travel} - travel_at_rest{force.row}", rate)
+            return BY_TRAVEL[law](parameters, f"{travel} - travel_at_rest{position}", rate)
 
 
 def tyre_expression(tyre: Tyre) -> str:

@@ -125,10 +125,10 @@ def _parameters(equations: Equations) -> Iterable[str]:
         unit, meaning, *_ = PARAMETERS[name]
         yield f"parameter Real {name}(unit={_quoted(_modelica_unit(unit))}) = {number(value)} {_quoted(meaning)};"
     yield f'parameter Real gravity(unit="m.s-2") = {number(STANDARD_GRAVITY)};'
-    offsets = {force.row: force.offset for force in equations.forces if force.law in BY_TRAVEL}
-    for row, offset in offsets.items():
-        about = "travel from which the curve of a spring counts"
-        yield f'parameter Real travel_at_rest{row}(unit="m") = {number(offset)} "{about}";'
+    about = "travel from which the curve of a spring counts"
+    for i, force in enumerate(equations.forces):
+        if force.law in BY_TRAVEL:
+            yield f'parameter Real travel_at_rest{i}(unit="m") = {number(force.offset)} "{about}";'
 
 
 def _variables(equations: Equations, rest: Array) -> Iterable[str]:

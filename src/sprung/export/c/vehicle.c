@@ -250,6 +250,10 @@ static int find_rest(Vehicle *vehicle) {
     double *X = vehicle->state, none[STATES] = {0}, change[N_ALL] = {0}, best = HUGE_VAL, size = 1.0;
     double at_rest[N_MEMORIES + 1] = {0};
     memset(X, 0, sizeof vehicle->state);
+    /* From the rest of the vehicle as it was exported, on flat road at the mean height of this one. */
+    for (int i = 0; i < N_FORCED; i++) X[i] = rest[i];
+    for (int wheel = 0; wheel < N_WHEELS; wheel++)
+        for (int i = 0; i < N_FORCED; i++) X[i] += heave[i] * vehicle->road[wheel] / N_WHEELS;
     for (int k = 0; k < ITERATIONS; k++) {
         double R[N_ALL], J[N_ALL][N_ALL], largest = 0.0, scale = 1.0;
         forces_on(vehicle, vehicle->time, X, none, R);
