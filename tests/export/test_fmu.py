@@ -44,6 +44,7 @@ def test_fmpy_builds_it_from_its_source(tmp_path: Path) -> None:
     vehicle, load = case("curve")
     folder = tmp_path / "unzipped"
     fmpy.extract(str(export.fmu(vehicle, load, build=False).save(tmp_path / "x.fmu")), str(folder))
+    (tmp_path / "build").mkdir()
     build.build_platform_binary(str(folder), str(tmp_path / "build"))
     moved = drop_fmu(folder, vehicle)
     assert greatest_difference("curve", np.array([moved[one] for one in moving_names(vehicle)])) < WITHIN / 10
