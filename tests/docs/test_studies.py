@@ -113,6 +113,7 @@ def test_exported_drops(tmp_path: Path) -> None:
     assert "| mount |" in page
 
 
+@pytest.mark.long
 def test_parts_of_a_vehicle(tmp_path: Path) -> None:
     page, numbers = study("parts_of_a_vehicle.py", tmp_path, "--campaigns", "1")
     assert "nan" not in page
