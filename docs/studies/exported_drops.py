@@ -35,6 +35,7 @@ def main() -> None:
     """Run the study."""
     parser = argparse.ArgumentParser(description="Drops of exported vehicles in other programs.")
     parser.add_argument("--cases", nargs="*", default=CASES, help="vehicles (default: all)")
+    parser.add_argument("--campaigns", type=int, help="of other studies; nothing here is random")
     parser.add_argument("--processes", type=int, default=1, help="how many at a time (default %(default)s)")
     parser.add_argument("--to", type=Path, default=Path(__file__).parent, help="folder of page and numbers")
     options = parser.parse_args()
