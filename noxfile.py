@@ -114,6 +114,7 @@ def studies(session: nox.Session) -> None:
     for study in (
         "at_the_bound",
         "parts_of_a_vehicle",
+        "exported_drops",
         "excitations",
         "pads",
         "quantities",

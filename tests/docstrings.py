@@ -33,6 +33,7 @@ ROOMS = (
     "uncertainty",
     "estimation",
     "faults",
+    "export",
     "files",
     "formats",
     "modal",

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 ROOMS = (
     "plot",
     "report",
+    "export",
     "study",
     "paper",
     "analysis",

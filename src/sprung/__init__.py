@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from sprung import analysis as analysis
     from sprung import campaign as campaign
+    from sprung import export as export
     from sprung import files as files
     from sprung import paper as paper
     from sprung import plot as plot
@@ -85,7 +86,7 @@ _HOME = {
     "validate": "study",
     "write": "campaign",
 }
-_ROOMS = ("analysis", "campaign", "files", "paper", "plot", "report", "study")
+_ROOMS = ("analysis", "campaign", "export", "files", "paper", "plot", "report", "study")
 
 
 def __getattr__(name: str) -> Any:

@@ -102,6 +102,18 @@ def test_at_the_bound(tmp_path: Path) -> None:
 
 
 @pytest.mark.long
+def test_exported_drops(tmp_path: Path) -> None:
+    for package in ("fmpy", "rumoca", "mujoco"):
+        pytest.importorskip(package)
+    page, numbers = study("exported_drops.py", tmp_path, "--cases", "quarter", "mount")
+    quarter, mount = numbers["cases"]
+    assert max(quarter["modelica"], quarter["fmu"], quarter["mjcf"]) < 0.01
+    assert mount["mjcf"] is None
+    assert "are met" in page
+    assert "| mount |" in page
+
+
+@pytest.mark.long
 def test_parts_of_a_vehicle(tmp_path: Path) -> None:
     page, numbers = study("parts_of_a_vehicle.py", tmp_path, "--campaigns", "1")
     assert "nan" not in page

@@ -21,6 +21,7 @@ ORDER = (
     "check",
     "identify",
     "report",
+    "export",
     "validate",
     "modal",
     "plan",

@@ -1,4 +1,4 @@
-"""Shell completion of campaigns, results folders, parameters and methods."""
+"""Shell completion of campaigns, results folders, parameters, methods and formats."""
 
 from __future__ import annotations
 
@@ -30,6 +30,13 @@ def methods(incomplete: str) -> list[str]:
     from sprung.modal import METHODS  # noqa: PLC0415
 
     return [name for name in METHODS if name.startswith(incomplete)]
+
+
+def export_formats(incomplete: str) -> list[str]:
+    """Return the names of export formats that begin with the text."""
+    from sprung.export import FORMATS  # noqa: PLC0415
+
+    return [name for name in FORMATS if name.startswith(incomplete)]
 
 
 def _paths(incomplete: str, marks: str, suffix: str) -> Iterator[str]:

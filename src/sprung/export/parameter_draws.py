@@ -1,0 +1,168 @@
+"""Draws from the joint distribution of the estimated parameters: a table with one vehicle in each row."""
+
+from __future__ import annotations
+
+import importlib
+import io
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sprung.dataframes import require_pandas
+from sprung.display import shown
+from sprung.errors import InputError, Problem
+from sprung.export.file import ExportedFile
+from sprung.export.outputs import identifier
+from sprung.results import Result
+from sprung.vehicle import PARAMETERS, Vehicle
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Array = NDArray[np.float64]
+
+USUAL_NUMBER = 200
+"""Draws of a table where none are asked for: a standard deviation from them is known to 5 %."""
+
+
+@shown
+@dataclass(frozen=True, slots=True, eq=False)
+class Draws:
+    """Draws from the joint distribution of the parameters of a vehicle.
+
+    Attributes
+    ----------
+    names, units
+        Of the parameters, in the order of the columns.
+    values
+        SI, shape (draw, parameter); what was known exactly has one value.
+    name, model
+        Of the vehicle: its name, and which part of a vehicle it is.
+    heights
+        m, by their keys in a campaign file.
+    notes
+        What a reader has to know, one sentence each.
+    """
+
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+    values: Array
+    name: str
+    model: str
+    heights: dict[str, float]
+    notes: tuple[str, ...] = ()
+
+    def vehicles(self) -> Iterator[Vehicle]:
+        """Return the vehicle of each draw, one after the other.
+
+        Returns
+        -------
+        iterator of Vehicle
+        """
+        for row in self.values.tolist():
+            yield Vehicle.nearest(dict(zip(self.names, row, strict=True)), name=self.name, **self.heights)
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """Return the table with a column for each parameter, SI."""
+        require_pandas()
+        import pandas as pd  # noqa: PLC0415 (optional, and nothing else here needs it)
+
+        return pd.DataFrame(self.values, columns=list(self.names)).rename_axis("draw")
+
+    def csv(self) -> ExportedFile:
+        """Return the table as CSV text: a line with the names, then a line for each draw, SI."""
+        lines = [",".join(self.names), *(",".join(map(repr, row)) for row in self.values.tolist())]
+        return ExportedFile(f"{identifier(self.name)}_draws.csv", ("\n".join(lines) + "\n").encode(), self.notes)
+
+    def parquet(self) -> ExportedFile:
+        """Return the table as Parquet, with the units in the metadata of its columns.
+
+        Raises
+        ------
+        InputError
+            If PyArrow is not installed.
+        """
+        try:
+            arrow: Any = importlib.import_module("pyarrow")
+            written: Any = importlib.import_module("pyarrow.parquet")
+        except ImportError as error:
+            do = 'Run: python -m pip install "sprung[parquet]"; or write CSV.'
+            raise InputError([Problem("draws as Parquet", "no package pyarrow", "pyarrow installed", do)]) from error
+        fields = [
+            arrow.field(name, arrow.float64(), metadata={"unit": unit})
+            for name, unit in zip(self.names, self.units, strict=True)
+        ]
+        table = arrow.table([arrow.array(column) for column in self.values.T], schema=arrow.schema(fields))
+        content = io.BytesIO()
+        written.write_table(table, content)
+        return ExportedFile(f"{identifier(self.name)}_draws.parquet", content.getvalue(), self.notes)
+
+
+def draws(result: Result, number: int = USUAL_NUMBER, *, seed: int | None = None) -> Draws:
+    """Draw vehicles from the joint distribution of the estimated parameters.
+
+    The estimates are normally distributed in the coordinates in which they were fitted: the logarithms of parameters that must
+    be positive, the others themselves. Correlations, and what the uncertainty of known quantities adds, are in their covariance
+    matrix. A parameter that cannot be negative is 0 where its draw is.
+
+    Parameters
+    ----------
+    result
+        Of an identification, every parameter determined.
+    number
+        Number of draws.
+    seed
+        Of the random numbers; None gives other ones each time.
+
+    Returns
+    -------
+    Draws
+
+    Raises
+    ------
+    InputError
+        If the result is rejected, a parameter is not determined, or the number or seed is impossible; all reasons at once.
+    """
+    problems = [
+        Problem(f"draws of {result.name}: {what}", repr(value), f"a whole number, {least} or more", "Correct it.")
+        for what, value, least in (("number", number, 1), ("seed", seed, 0))
+        if value is not None and (isinstance(value, bool) or int(value) != value or value < least)
+    ]
+    try:
+        vehicle = result.vehicle
+    except InputError as error:
+        problems += error.problems
+    if problems:
+        raise InputError(problems)
+    covariance = result.covariance
+    names = tuple(result.parameters)
+    center = np.array([result.parameters[name].value for name in names], dtype=float)
+    at = [names.index(name) for name in covariance.names]
+    is_positive = np.array([PARAMETERS[name].positive for name in covariance.names], dtype=np.bool_)
+    # The derivative of a positive parameter by its logarithm is its value.
+    slopes = np.where(is_positive, center[at], 1.0)
+    steps = _normal(covariance.matrix / np.outer(slopes, slopes), number, np.random.default_rng(seed))
+    values = np.tile(center, (number, 1))
+    with np.errstate(over="ignore"):
+        values[:, at] = np.where(
+            is_positive, center[at] * np.exp(np.where(is_positive, steps, 0.0)), center[at] + steps
+        )
+    notes = []
+    for column, name in enumerate(names):
+        negative = values[:, column] < 0
+        if negative.any() and not PARAMETERS[name].signed:
+            notes.append(f"{int(negative.sum())} of {number} draws of {name} are 0: it cannot be negative.")
+            values[negative, column] = 0.0
+    units = tuple(PARAMETERS[name].unit for name in names)
+    return Draws(names, units, values, result.name, vehicle.model, dict(result.setup.heights), tuple(notes))
+
+
+def _normal(covariance: Array, number: int, random: np.random.Generator) -> Array:
+    """Return normal draws of zero mean, shape (number, parameter); the covariance may be singular."""
+    # The symmetric square root is unique: neither signs nor order of eigenvectors change the draws.
+    sizes, directions = np.linalg.eigh(covariance)
+    root = (directions * np.sqrt(np.maximum(sizes, 0.0))) @ directions.T
+    return np.asarray(random.standard_normal((number, len(covariance))) @ root)
