@@ -1,0 +1,21 @@
+"""Ride and inspection numbers of an identified vehicle: transmissibility, roads, comfort, suspension testers, quarter cars."""
+
+from sprung.ride.options import Place, RideOptions
+from sprung.ride.ride_numbers import RideNumbers, RoadNumbers, Transmissibility, ride_numbers
+from sprung.ride.road import ROAD_CLASSES, Road, Tracks, coherence_of_tracks
+from sprung.ride.weighting import Weighting, frequency_weighting
+
+__all__ = [
+    "ROAD_CLASSES",
+    "Place",
+    "RideNumbers",
+    "RideOptions",
+    "Road",
+    "RoadNumbers",
+    "Tracks",
+    "Transmissibility",
+    "Weighting",
+    "coherence_of_tracks",
+    "frequency_weighting",
+    "ride_numbers",
+]
