@@ -1,13 +1,19 @@
 """Suspension testers: a plate under one wheel oscillates, the others stand still.
 
 EUSAMA: the plate moves by 6 mm from end to end, from 25 Hz down through the resonance of the wheel. The minimum of the force on it
-over the static load is the adhesion. EGEA SPECSUS2018, after Tsymberov (SAE 960735): the minimum phase by which the
-force leads the plate between the resonances of body and wheel; below 35° the damper fails. The resonance of the wheel is here
-the frequency of the largest force. All is computed in the steady state, as the frequency falls slowly.
+over the static load is the adhesion.
+
+EGEA SPECSUS2018, after Tsymberov (SAE 960735): the phase shift is the angle from the highest place of the plate to the middle
+between the instants at which the force falls and rises through its static value, where it is smallest. It is 180° where the
+force follows the plate, as at high frequencies; between the resonances of body and wheel it is small where little damping is.
+Its minimum from 18 down to 6 Hz is the result; below 35° the damper fails.
+
+Both are computed in the steady state, as the frequency falls slowly.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -30,10 +36,10 @@ BAND = (1.0, 25.0)
 """Frequencies of the plate, Hz; below, the force hardly changes."""
 
 PHASE_BAND = (6.0, 18.0)
-"""Frequencies at which the minimum phase is searched for, Hz, as far as they are below the resonance of the wheel."""
+"""Frequencies at which the minimum phase shift is searched for, Hz."""
 
 PHASE_LIMIT = float(np.deg2rad(35.0))
-"""Least phase of a damper that passes, rad."""
+"""Least phase shift of a damper that passes, rad."""
 
 _STEP = 0.1
 """Hz, of the search."""
@@ -72,11 +78,11 @@ class PlateTest(NamedTuple):
     resonance
         Frequency of the largest force, Hz.
     phase
-        Smallest phase by which the force leads the plate, rad; None of a wheel with its resonance below 6 Hz.
+        Smallest phase shift, rad; None of a wheel with its resonance below 6 Hz, on which it says nothing.
     phase_frequency
         Where it is so, Hz.
-    around
-        The response near the resonance.
+    around, lowest
+        The response near the resonance, and at the smallest phase shift.
     """
 
     least_load: float
@@ -84,6 +90,7 @@ class PlateTest(NamedTuple):
     phase: float | None
     phase_frequency: float | None
     around: PlateResponse
+    lowest: PlateResponse | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -173,44 +180,55 @@ class Plate:
         if near is None:
             grid = np.arange(BAND[0], BAND[1] + _STEP / 2, _STEP)
             force = self.respond(values, grid).force
-            resonance = self._refined(values, grid, np.abs(force))
+            resonance = self._refined(grid, -np.abs(force), lambda at: -np.abs(self.respond(values, at).force))
+            around = None
         else:
-            resonance = near.resonance
+            resonance, around = near.resonance, near.around
         at = np.clip(resonance, BAND[0] + _NEAR, BAND[1] - _NEAR) + _NEAR * np.array([-1.0, 0.0, 1.0])
-        around = self.respond(values, at, None if near is None else near.around)
-        size, phases = np.abs(around.force), np.unwrap(np.angle(around.force))
+        around = self.respond(values, at, around)
+        size = np.abs(around.force)
         first, second = (size[2] - size[0]) / 2, size[2] - 2 * size[1] + size[0]
         step = float(np.clip(-first / second, -1, 1)) if second < 0 else float(np.sign(first))
         top = float(size[1] + first * step + second * step**2 / 2)
         share, resonance = 1 - self.amplitude * top / static, float(at[1] + step * _NEAR)
-        end = float(phases[1] + step * (phases[2] - phases[0]) / 2 + step**2 * (phases[2] - 2 * phases[1] + phases[0]) / 2)
-        if near is None:
-            inside = (grid >= PHASE_BAND[0]) & (grid <= min(PHASE_BAND[1], resonance))
-            if not inside.any():
-                return PlateTest(share, resonance, None, None, around)
-            own = np.angle(force[inside])
-            frequency = float(grid[inside][np.argmin(own)])
-            if end <= own.min() and resonance <= PHASE_BAND[1]:
-                frequency = resonance
-            is_at_resonance = frequency == resonance
-        else:
-            if near.phase_frequency is None:
-                return PlateTest(share, resonance, None, None, around)
+        if near is not None:
             frequency = near.phase_frequency
-            is_at_resonance = near.phase_frequency == near.resonance
-        if is_at_resonance:
-            return PlateTest(share, resonance, end, resonance, around)
-        phase = float(np.angle(self.respond(values, np.array([frequency])).force[0]))
-        return PlateTest(share, resonance, phase, frequency, around)
+        elif resonance < PHASE_BAND[0]:
+            frequency = None
+        else:
+            inside = (grid >= PHASE_BAND[0] - _STEP / 2) & (grid <= PHASE_BAND[1] + _STEP / 2)
+            shifts = phase_shift(force[inside])
+            frequency = self._refined(grid[inside], shifts, lambda at: phase_shift(self.respond(values, at).force))
+        if frequency is None:
+            return PlateTest(share, resonance, None, None, around)
+        # At a minimum, or at the end of the band, its place does not matter to first order.
+        lowest = self.respond(values, np.array([frequency]), None if near is None else near.lowest)
+        return PlateTest(share, resonance, float(phase_shift(lowest.force)[0]), frequency, around, lowest)
 
-    def _refined(self, values: Real, grid: Real, size: Real) -> float:
-        """Return the frequency of the largest force, from its values on a grid."""
-        best = int(np.argmax(size))
+    def _refined(self, grid: Real, sizes: Real, function: Callable[[Real], Real]) -> float:
+        """Return the frequency of the minimum of a function, from its values on a grid."""
+        best = int(np.argmin(sizes))
         low, high = grid[max(best - 1, 0)], grid[min(best + 1, len(grid) - 1)]
         found = minimize_scalar(
-            lambda one: -float(np.abs(self.respond(values, np.array([one])).force[0])),
+            lambda one: float(function(np.array([one]))[0]),
             bounds=(low, high),
             method="bounded",
             options={"xatol": 1e-4},
         )
-        return float(found.x)
+        return float(found.x) if found.fun < sizes[best] else float(grid[best])
+
+
+def phase_shift(force: Complex) -> Real:
+    """Return the phase shift of EGEA, from the highest place of the plate to the smallest force.
+
+    Parameters
+    ----------
+    force
+        Over the displacement of the plate, N/m, any shape.
+
+    Returns
+    -------
+    ndarray
+        rad, 0 to π, of the shape of the force.
+    """
+    return np.asarray(np.pi - np.abs(np.angle(force)))

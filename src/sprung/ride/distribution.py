@@ -26,7 +26,7 @@ _PART = 0.01
 _LEAST = 1e-5
 """Smallest such step, as a part of the parameter: rounding and iterations leave smaller ones no digits."""
 
-_UNSCALED = 1e-6
+_UNSCALED = 1e-3
 """Relative change of a quantity with the absolute scale below which it does not depend on it."""
 
 
@@ -203,10 +203,12 @@ def estimate_of_number(
     """
     if not is_determined or not np.isfinite(value):
         return Estimate(None, None, None, unit, "unidentifiable")
+    if limits is not None:
+        value = float(np.clip(value, *limits))
     if std <= 1e-9 * abs(value):
         return Estimate(value, 0.0, (value, value), unit, "known")
     if limits is None:
         factor = float(np.exp(NORMAL_95 * std / value))
         return Estimate(value, std, (value / factor, value * factor), unit, "estimated", "curvature")
     low, high = (float(np.clip(value + sign * NORMAL_95 * std, *limits)) for sign in (-1, 1))
-    return Estimate(float(np.clip(value, *limits)), std, (low, high), unit, "estimated", "curvature")
+    return Estimate(value, std, (low, high), unit, "estimated", "curvature")

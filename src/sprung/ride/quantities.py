@@ -55,7 +55,7 @@ QUANTITIES: Mapping[tuple[str, str], Quantity] = MappingProxyType(
         ("plates", "static_load"): Quantity("N", "static wheel load"),
         ("plates", "least_load"): Quantity("1", "minimum force on the plate over the static load (EUSAMA)", (0.0, 1.0)),
         ("plates", "resonance"): Quantity("Hz", "frequency of the largest force on the plate"),
-        ("plates", "least_phase"): Quantity("rad", "minimum phase of the force before the plate (EGEA)", (-math.pi, math.pi)),
+        ("plates", "least_phase"): Quantity("rad", "minimum phase shift from 18 to 6 Hz (EGEA)", (0.0, math.pi)),
         ("places", "acceleration"): Quantity("m/s^2", "vertical acceleration, rms"),
         ("places", "weighted"): Quantity("m/s^2", "vertical acceleration, weighted by W_k, rms"),
         ("places", "vibration_dose"): Quantity("m/s^1.75", "vibration dose value of the vertical acceleration"),

@@ -57,8 +57,8 @@ def spectral_lines(band: tuple[float, float], delay: float) -> tuple[Real, Real]
     widest = 1 / (_PER_PERIOD * delay) if delay > 0 else np.inf
     change = min(max(widest / (_RATIO - 1), low), high)
     logarithmic = np.geomspace(low, change, max(int(np.log(change / low) / np.log(_RATIO)), 1) + 1)
-    linear = np.linspace(change, high, int((high - change) / widest) + 2) if change < high else change[None:]
-    frequency = np.concatenate([logarithmic, np.atleast_1d(linear)[1:]])
+    linear = np.linspace(change, high, int((high - change) / widest) + 2)[1:] if change < high else np.empty(0)
+    frequency = np.concatenate([logarithmic, linear])
     gaps = np.diff(frequency)
     weights = np.zeros(len(frequency))
     weights[:-1] += gaps / 2
