@@ -29,8 +29,8 @@ def transfer(frequency: Real) -> tuple[Complex, Complex]:
 def mean_square(numerator: tuple[float, float, float, float], white: float) -> float:
     """Return the mean square of a quantity under white noise in closed form.
 
-    Newland (An Introduction to Random Vibrations, 1993, appendix 1): for H = (B₀ + iωB₁ - ω²B₂ - iω³B₃)/(A₀ + iωA₁ - ω²A₂ - iω³A₃ + ω⁴A₄)
-    the integral of |H|² over all ω, times the two-sided spectrum.
+    Newland (An Introduction to Random Vibrations, 1993, appendix 1): for H = (B₀ + iωB₁ - ω²B₂ - iω³B₃)/(A₀ + iωA₁ - ω²A₂ -
+    iω³A₃ + ω⁴A₄) the integral of |H|² over all ω, times the two-sided spectrum.
 
     Parameters
     ----------

@@ -29,6 +29,7 @@ ROOMS = (
     "paper",
     "analysis",
     "modal_survey",
+    "ride",
     "results",
     "checking",
     "drafting",

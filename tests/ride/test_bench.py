@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from quarter_car import K_T, M_S, M_U, QUARTER, VALUES, transfer
 from scipy.optimize import minimize_scalar
 
+from quarter_car import K_T, M_S, M_U, QUARTER, VALUES, transfer
 from sprung.ride import ride_numbers
 from sprung.ride.bench import AMPLITUDE, Plate, phase_shift
 from sprung.ride.ride_model import RideModel
@@ -38,8 +38,8 @@ def test_minimum_load_and_phase_of_a_quarter_car() -> None:
 
 
 def test_phase_shift_is_none_of_slow_plates_and_half_a_turn_of_fast_ones() -> None:
-    """A slow plate lifts the whole mass: the force is -ω² (m_s + m_u) h, smallest where the plate is highest. A fast one compresses
-    the tyre alone, and the force is largest there."""
+    """A slow plate lifts the whole mass: the force is -ω² (m_s + m_u) h, smallest where the plate is highest. A fast one
+    compresses the tyre alone, and the force is largest there."""
     slow, fast = Plate(RideModel.of(QUARTER), "wheel").respond(VALUES, np.array([0.01, 2000.0])).force
     assert_allclose(slow, -((2 * np.pi * 0.01) ** 2) * (M_S + M_U), rtol=1e-3)
     assert_allclose(fast, K_T, rtol=1e-3)
@@ -47,7 +47,8 @@ def test_phase_shift_is_none_of_slow_plates_and_half_a_turn_of_fast_ones() -> No
 
 
 def test_phase_shift_is_that_of_its_definition() -> None:
-    """In time: from the highest place of the plate to the middle between the force falling and rising through its static value."""
+    """In time: from the highest place of the plate to the middle between the force falling and rising through its static
+    value."""
     frequency = 9.0
     time = np.linspace(0, 2 / frequency, 200001)
     dynamic = (force(frequency) * np.exp(2j * np.pi * frequency * time)).real  # the plate is highest at 0
@@ -63,21 +64,23 @@ def test_another_quarter_car() -> None:
     car = Vehicle(model="quarter", m_s=346.0, m_u=36.0, k_s=25570.0, k_t=253161.0, c_s=1474.0, c_t=150.0)
     plate = ride_numbers(car, roads="C").plates["wheel"]
     assert plate["least_load"].value == pytest.approx(0.58, abs=0.01)
-    assert plate["least_phase"].value > np.deg2rad(60)  # type: ignore[operator]
+    assert plate["least_phase"].value > np.deg2rad(60)
 
 
 def test_weak_dampers_fail() -> None:
     """With a quarter of the damping (ratio 0.07) a car falls below 35°, and its minimum load gets worse."""
     sound = ride_numbers(TABLE_1_CAR, roads="C").plates["fl"]
     weak = ride_numbers(TABLE_1_CAR.with_values(c_sf=375.0, c_sr=375.0), roads="C").plates["fl"]
-    assert sound["least_phase"].value > np.deg2rad(35) > weak["least_phase"].value  # type: ignore[operator]
+    assert sound["least_phase"].value > np.deg2rad(35) > weak["least_phase"].value
     assert sound["least_load"].value > weak["least_load"].value  # type: ignore[operator]
 
 
 def test_phase_grows_with_damping_alone_nearly() -> None:
     """Lozia (2021): the dependence of the minimum phase on the damping of the suspension is close to linear."""
     phases = [
-        ride_numbers(Vehicle(QUARTER.parameters | {"c_s": c}, model="quarter"), roads="C").plates["wheel"]["least_phase"].value
+        ride_numbers(Vehicle(QUARTER.parameters | {"c_s": c}, model="quarter"), roads="C")
+        .plates["wheel"]["least_phase"]
+        .value
         for c in (400.0, 800.0, 1200.0)
     ]
     first, second, third = (one or 0.0 for one in phases)

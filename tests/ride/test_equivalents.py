@@ -39,8 +39,8 @@ def test_quarter_car_with_further_parts_has_its_own_modes(further: dict[str, flo
     """Mounts and Zener branches of both axles: those of the quarter car that has them."""
     whole = CAR.with_values(**{f"{name}{axle}": value for name, value in further.items() for axle in "fr"})
     found = ride_numbers(whole, roads="C").axles["rear"]
-    own = {name: found[name].value for name in ("m_s", "m_u", "k_s", "k_t")}
-    quarter = Vehicle({**own, "c_s": CAR.c_sr, **further}, model="quarter")  # type: ignore[arg-type]
+    own = {name: found[name].value or 0.0 for name in ("m_s", "m_u", "k_s", "k_t")}
+    quarter = Vehicle({**own, "c_s": CAR.c_sr, **further}, model="quarter")
     poles = np.linalg.eigvals(quarter.matrices().state)
     vibrating = sorted((pole for pole in poles if pole.imag > 0), key=abs)
     assert found["body_frequency"].value == pytest.approx(abs(vibrating[0]) / (2 * np.pi), rel=1e-8)
@@ -103,7 +103,9 @@ def test_engine_and_people_are_carried_by_the_body() -> None:
     for axle in ("front", "rear"):
         assert with_engine.axles[axle]["m_s"].value == pytest.approx(plain.axles[axle]["m_s"].value, rel=1e-9)
     pitch, other = plain.half_cars["pitch"], with_engine.half_cars["pitch"]
-    assert_allclose([one.value for one in other.values()], [one.value for one in pitch.values()], rtol=1e-9)
+    assert_allclose(
+        [one.value or 0.0 for one in other.values()], [one.value or 0.0 for one in pitch.values()], rtol=1e-9
+    )
 
 
 @pytest.mark.parametrize("model", ["pitch-plane", "roll-plane", "quarter"])

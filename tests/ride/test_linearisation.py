@@ -132,11 +132,16 @@ def rough(roughness: float, speed: float, seed: int) -> Road4:
 
 @pytest.mark.parametrize(
     ("further", "road"),
-    [({"r": 3.0}, "C"), ({"F": 120.0, "s": 2e5}, "A"), ({"F": 120.0, "s": 2e5, "r": 2.0}, "B"), ({"F": 60.0, "s": 4e5}, "B")],
+    [
+        ({"r": 3.0}, "C"),
+        ({"F": 120.0, "s": 2e5}, "A"),
+        ({"F": 120.0, "s": 2e5, "r": 2.0}, "B"),
+        ({"F": 60.0, "s": 4e5}, "B"),
+    ],
 )
 def test_random_response_is_that_of_a_simulation(further: dict[str, float], road: str) -> None:
-    """Statistical linearisation takes the motion as Gaussian, which that of a damper three times as stiff in rebound is not: its
-    travel is 7 % too small, all else within 6 %. Of this 2 % are the statistics of 400 roads of 3 s."""
+    """Statistical linearisation takes the motion as Gaussian, which that of a damper three times as stiff in rebound is not:
+    its travel is 7 % too small, all else within 6 %. Of this 2 % are the statistics of 400 roads of 3 s."""
     vehicle = quarter(**further)
     one, speed = Road.of_class(road), 20.0
     body, travel, tyre = (part[4000:] for part in stepped(vehicle, rough(one.roughness, speed, seed=5)))
@@ -152,8 +157,8 @@ def test_random_response_is_that_of_a_simulation(further: dict[str, float], road
 
 @pytest.mark.parametrize("further", [{"r": 2.5}, {"F": 120.0, "s": 2e5}])
 def test_plate_response_is_that_of_a_simulation(further: dict[str, float]) -> None:
-    """First harmonic of the force on a plate that moves by ±3 mm, after 4 s: higher harmonics leave up to 5 % where the force is
-    small, and 2 % from the resonance on, where testers look."""
+    """First harmonic of the force on a plate that moves by ±3 mm, after 4 s: higher harmonics leave up to 5 % where the force
+    is small, and 2 % from the resonance on, where testers look."""
     vehicle = quarter(**further)
     frequency = np.array([6.0, 9.0, 12.0, 15.0])
     step = 2e-4

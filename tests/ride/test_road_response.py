@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from numpy.typing import NDArray
-from quarter_car import BODY_ACCELERATION, M_S, M_U, QUARTER, TRAVEL, TYRE_LOAD, VALUES, mean_square, transfer
 from scipy.linalg import expm
 from scipy.signal import bilinear_zpk, sosfilt, zpk2sos
 
+from quarter_car import BODY_ACCELERATION, M_S, M_U, QUARTER, TRAVEL, TYRE_LOAD, VALUES, mean_square, transfer
 from sprung.ride import Road, frequency_weighting, ride_numbers
 from sprung.ride.ride_model import RideModel
 from sprung.ride.road_response import Drive, respond, spectral_lines
@@ -60,7 +60,8 @@ def test_lines_add_up_to_an_integral() -> None:
 def simulated(vehicle: Vehicle, speed: float, roughness: float, seed: int) -> tuple[Real, float]:
     """Return the states of many vehicles of two axles on as many roads, shape (time, state, road), and the time step.
 
-    White noise is the velocity under the front wheels, and the same a wheelbase later under the rear wheels; every step is exact.
+    White noise is the velocity under the front wheels, and the same a wheelbase later under the rear wheels; every step is
+    exact.
     """
     source, step, roads = np.random.default_rng(seed), 1e-3, 300
     delay = round(vehicle.wheelbase / speed / step)
@@ -87,8 +88,8 @@ def simulated(vehicle: Vehicle, speed: float, roughness: float, seed: int) -> tu
 
 
 def test_simulated_records_have_the_same_mean_squares_and_doses() -> None:
-    """Pitch plane with the delay of the rear axle: 300 roads of 5 s each. Statistical uncertainty: some 2000 independent swings of
-    the body (1 Hz, 0.25 damped), so that a root mean square has 2 %; allowed are three times as much."""
+    """Pitch plane with the delay of the rear axle: 300 roads of 5 s each. Statistical uncertainty: some 2000 independent
+    swings of the body (1 Hz, 0.25 damped), so that a root mean square has 2 %; allowed are three times as much."""
     car = TABLE_1_CAR
     names = ("m_s", "I_yy", "m_uf", "m_ur", "k_sf", "k_sr", "k_tf", "k_tr", "c_sf", "c_sr", "a", "b")
     plane = Vehicle(model="pitch-plane", **{name: getattr(car, name) for name in names})
@@ -162,7 +163,8 @@ def test_one_profile_on_both_sides_is_the_pitch_plane() -> None:
 
 
 def test_independent_tracks_add_up_in_roll() -> None:
-    """With independent tracks the mean square of roll is twice that by one side alone; and of bounce half that of one profile."""
+    """With independent tracks the mean square of roll is twice that by one side alone; and of bounce half that of one
+    profile."""
     car = TABLE_1_CAR
     same, apart = (ride_numbers(car, roads="C", tracks=one).on("C") for one in ("same", "independent"))
     ratio = same.body["pitch"]["acceleration"].value / apart.body["pitch"]["acceleration"].value  # type: ignore[operator]

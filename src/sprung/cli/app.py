@@ -25,6 +25,7 @@ ORDER = (
     "modal",
     "plan",
     "compare",
+    "ride",
     "simulate",
     "paper",
     "schema",

@@ -1,12 +1,15 @@
 """Ride and inspection numbers of an identified vehicle: transmissibility, roads, comfort, suspension testers, quarter cars."""
 
-from sprung.ride.options import Place, RideOptions
+from sprung.ride.options import USUAL_ROADS, USUAL_SPEED, Place, RideOptions
 from sprung.ride.ride_numbers import RideNumbers, RoadNumbers, Transmissibility, ride_numbers
 from sprung.ride.road import ROAD_CLASSES, Road, Tracks, coherence_of_tracks
+from sprung.ride.tables import ride_tables
 from sprung.ride.weighting import Weighting, frequency_weighting
 
 __all__ = [
     "ROAD_CLASSES",
+    "USUAL_ROADS",
+    "USUAL_SPEED",
     "Place",
     "RideNumbers",
     "RideOptions",
@@ -18,4 +21,5 @@ __all__ = [
     "coherence_of_tracks",
     "frequency_weighting",
     "ride_numbers",
+    "ride_tables",
 ]

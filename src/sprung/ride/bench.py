@@ -1,7 +1,7 @@
 """Suspension testers: a plate under one wheel oscillates, the others stand still.
 
-EUSAMA: the plate moves by 6 mm from end to end, from 25 Hz down through the resonance of the wheel. The minimum of the force on it
-over the static load is the adhesion.
+EUSAMA: the plate moves by 6 mm from end to end, from 25 Hz down through the resonance of the wheel. The minimum of the force
+on it over the static load is the adhesion.
 
 EGEA SPECSUS2018, after Tsymberov (SAE 960735): the phase shift is the angle from the highest place of the plate to the middle
 between the instants at which the force falls and rises through its static value, where it is smallest. It is 180° where the

@@ -1,8 +1,8 @@
 """The joint distribution of a vehicle's parameters, and what it makes of quantities that follow from them.
 
 Parameters that must be positive are estimated by their logarithms, the others by themselves: these are the coordinates, and
-their estimates are Gaussian with one covariance. A quantity that follows from them has, to first order, the variance g C gᵀ with its
-gradient g by the coordinates.
+their estimates are Gaussian with one covariance. A quantity that follows from them has, to first order, the variance g C gᵀ
+with its gradient g by the coordinates.
 """
 
 from __future__ import annotations

@@ -21,7 +21,9 @@ _REAL = 1e-9
 """Imaginary part of a pole over its magnitude below which it does not oscillate."""
 
 
-def axle_numbers(model: RideModel, values: Real, equivalents: EquivalentElements | None = None) -> dict[str, dict[str, float]]:
+def axle_numbers(
+    model: RideModel, values: Real, equivalents: EquivalentElements | None = None
+) -> dict[str, dict[str, float]]:
     """Return the quarter car of each axle, with the natural frequencies and damping ratios of its two modes.
 
     Parameters
@@ -71,9 +73,7 @@ def _with_equivalents(model: RideModel, values: Real, equivalents: EquivalentEle
     return Matrices(M, C, K)
 
 
-def _quarter_matrices(
-    model: RideModel, values: Real, axle: str, equivalents: EquivalentElements | None
-) -> Matrices:
+def _quarter_matrices(model: RideModel, values: Real, axle: str, equivalents: EquivalentElements | None) -> Matrices:
     """Return M, C and K of body, wheel, and whatever coordinates without mass belong to the wheels of an axle; per wheel."""
     layout = model.vehicle.layout
     matrices = _with_equivalents(model, values, equivalents)
@@ -136,7 +136,9 @@ def _static_rate(quarter: Matrices) -> float:
     own = quarter.K[hidden, hidden]
     free = np.diag(own) == 0
     coupling = quarter.K[0, hidden] * ~free
-    return float(-(quarter.K[0, 1] - coupling @ np.linalg.solve(own + np.diag(free.astype(float)), quarter.K[hidden, 1])))
+    return float(
+        -(quarter.K[0, 1] - coupling @ np.linalg.solve(own + np.diag(free.astype(float)), quarter.K[hidden, 1]))
+    )
 
 
 def _of_dampers(model: RideModel, axle: str, equivalents: EquivalentElements) -> float:
@@ -198,13 +200,17 @@ def half_car_numbers(model: RideModel, values: Real) -> dict[str, dict[str, floa
     inertia = float(body[1, 1]) - mass * ahead**2
     share = 0.5 if layout.rolls else 1.0
     found = {
-        "pitch": {"m_s": share * mass, "I_yy": share * inertia, "a": a, "b": b, "dynamic_index": inertia / (mass * a * b)}
+        "pitch": {
+            "m_s": share * mass,
+            "I_yy": share * inertia,
+            "a": a,
+            "b": b,
+            "dynamic_index": inertia / (mass * a * b),
+        }
     }
     if layout.rolls:
         left = float(body[0, 2]) / mass
-        rates = {
-            name: sum(by_name[f"{name}{axle}"] for axle in layout.axles) for name in ("m_u", "k_s", "k_t", "c_s")
-        }
+        rates = {name: sum(by_name[f"{name}{axle}"] for axle in layout.axles) for name in ("m_u", "k_s", "k_t", "c_s")}
         arms = dict(zip(layout.wheels, model.wheel_places(values)[1].tolist(), strict=True))
         squares = sum(by_name[f"k_s{axle}"] * arms[layout.wheels_of(axle)[0]] ** 2 for axle in layout.axles)
         found["roll"] = {

@@ -29,8 +29,8 @@ CURVE_FREQUENCIES = np.geomspace(0.3, 30.0, 161)
 _GAUSSIAN_DOSE = 3.0**0.25
 """E[a⁴]^¼ of a Gaussian process over its root mean square."""
 
-_ROTATION_FACTORS = {"theta": ("pitch", 0.4), "phi": ("roll", 0.63)}
-"""By coordinate: the axis, and the factor of its weighted acceleration in a point vibration total value, m/rad (ISO 2631-1, 8.2)."""
+_ROTATIONS = {"theta": "pitch", "phi": "roll"}
+"""Axis of each angle of the body."""
 
 _NEAR = 1.004
 """Ratio of neighbouring frequencies from which a peak is interpolated."""
@@ -165,7 +165,7 @@ def _road_numbers(response: RoadResponse, options: RideOptions) -> Iterator[tupl
             yield ("places", name, "total"), float(np.sqrt(weighted**2 + sum(squares)))
     rotations = np.abs(frequency_weighting("W_e", frequency)) ** 2
     layout = model.vehicle.layout
-    for coordinate, (axis, _) in _ROTATION_FACTORS.items():
+    for coordinate, axis in _ROTATIONS.items():
         if coordinate in layout.body:
             row = np.eye(1, model.linear.size, layout.body.index(coordinate))
             turning = response.accelerations(row)[:, 0]
@@ -210,7 +210,9 @@ def _plate_numbers(
         yield ("plates", wheel, "least_load"), found.least_load
         yield ("plates", wheel, "resonance"), found.resonance
         if found.phase is None:
-            failures["plates", wheel, "least_phase"] = f"the resonance of wheel {wheel} is below 6 Hz: it has no minimum phase"
+            failures["plates", wheel, "least_phase"] = (
+                f"the resonance of wheel {wheel} is below 6 Hz: it has no minimum phase"
+            )
         else:
             yield ("plates", wheel, "least_phase"), found.phase
 
@@ -226,7 +228,7 @@ def _curves(
     forces = model.tyre_forces(values, omega, displacements).sum(axis=2) / model.static_loads(values)
     travel = together @ model.travel.at(values).T
     hubs = together @ model.pads.rows.T
-    found = {}
+    found = dict[str, Complex]()
     layout = model.vehicle.layout
     for axle in layout.axles:
         own = [layout.wheels.index(wheel) for wheel in layout.wheels_of(axle)]

@@ -1,12 +1,13 @@
 """Equivalent linear elements: what nonlinear springs, dampers and dry friction are at the amplitudes of a motion.
 
 For a random motion by statistical linearisation: the linear element whose force differs least from the true one in the mean
-square, for Gaussian travel and rate (Booton 1954; Roberts and Spanos, Random Vibration and Statistical Linearization, 1990). Its
-rate is E[f x]/σ², its damping E[f v]/σ². Dry friction with presliding, F m with l m' = v - |v| m, becomes l m' = α v - β m with
-β = E|v| = √(2/π) σ_v and α = 1 - √(2/π) E[v m]/σ_v (Wen, J. Appl. Mech. 47 (1980) 150): a spring and a damper in series.
+square, for Gaussian travel and rate (Booton 1954; Roberts and Spanos, Random Vibration and Statistical Linearization, 1990).
+Its rate is E[f x]/σ², its damping E[f v]/σ². Dry friction with presliding, F m with l m' = v - |v| m, becomes l m' = α v - β m
+with β = E|v| = √(2/π) σ_v and α = 1 - √(2/π) E[v m]/σ_v (Wen, J. Appl. Mech. 47 (1980) 150): a spring and a damper in series.
 
-For a sinusoidal motion by harmonic linearisation: the first harmonic of the force over that of the travel (describing function).
-The memory of friction has closed over a period: between the turning points at ±a it is 1 - (1 + tanh(a/l)) exp(-(x + a)/l).
+For a sinusoidal motion by harmonic linearisation: the first harmonic of the force over that of the travel (describing
+function). The memory of friction has closed over a period: between the turning points at ±a it is 1 - (1 + tanh(a/l)) exp(-(x
++ a)/l).
 """
 
 from __future__ import annotations

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from sprung.display import shown
@@ -25,6 +25,7 @@ USUAL_SPEED = 80 / 3.6
 HOUR = 3600.0
 """s: the duration of a drive, for the vibration dose."""
 
+_WHERE = "ride numbers"
 _TRACKS: tuple[Tracks, ...] = ("isotropic", "same", "independent")
 _FASTEST, _SLOWEST = 150.0, 0.5
 
@@ -106,41 +107,66 @@ def checked_options(
     InputError
         If one of them is impossible.
     """
-    problems, where = Problems(), "ride numbers"
-    classes = ", ".join(ROAD_CLASSES)
-    found = []
-    for road in roads:
+    problems = Problems()
+    options = RideOptions(
+        roads=tuple(_checked_roads(roads, problems)),
+        speeds=tuple(_checked_speeds(speeds, problems)),
+        places=dict(_checked_places(places, heights, problems)),
+        tracks=_checked_tracks(tracks, problems),
+        duration=duration,
+    )
+    if not 0 < duration < math.inf:
+        problems.add(f"{_WHERE}: duration", f"{duration:g} s", "a positive number of seconds", "Correct it.")
+    problems.raise_if_any()
+    return options
+
+
+def _checked_roads(roads: Iterable[str | Road], problems: Problems) -> Iterator[Road]:
+    classes, number = ", ".join(ROAD_CLASSES), 0
+    for number, road in enumerate(roads, start=1):  # noqa: B007 (counted)
         if isinstance(road, Road):
-            found.append(road)
+            yield road
         elif road.upper() in ROAD_CLASSES:
-            found.append(Road.of_class(road.upper()))
+            yield Road.of_class(road.upper())
         else:
-            problems.add(f"{where}: road", f"'{road}'", f"a class of ISO 8608: {classes}", "Correct it.")
-    if not found and not problems:
-        problems.add(f"{where}: road", "none", f"at least one of {classes}", "Name a road.")
+            problems.add(f"{_WHERE}: road", f"'{road}'", f"a class of ISO 8608: {classes}", "Correct it.")
+    if not number:
+        problems.add(f"{_WHERE}: road", "none", f"at least one of {classes}", "Name a road.")
+
+
+def _checked_speeds(speeds: Sequence[float], problems: Problems) -> Iterator[float]:
     if not speeds:
-        problems.add(f"{where}: speed", "none", "at least one speed", "Give a speed in m/s.")
+        problems.add(f"{_WHERE}: speed", "none", "at least one speed", "Give a speed in m/s.")
     for speed in speeds:
-        if not _SLOWEST <= speed <= _FASTEST:
+        if _SLOWEST <= speed <= _FASTEST:
+            yield float(speed)
+        else:
             limits = f"{_SLOWEST:g} to {_FASTEST:g} m/s"
-            problems.add(f"{where}: speed", f"{speed:g} m/s", limits, "Correct it; speeds in Python are in m/s.")
-    chosen: dict[str, Place] = {}
+            problems.add(f"{_WHERE}: speed", f"{speed:g} m/s", limits, "Correct it; speeds in Python are in m/s.")
+
+
+def _checked_places(
+    places: Mapping[str, Sequence[float]], heights: Heights, problems: Problems
+) -> Iterator[tuple[str, Place]]:
     for name, place in places.items():
+        where = f"{_WHERE}: place '{name}'"
         if len(place) not in (2, 3) or not all(map(math.isfinite, place)):
             expected = "x, y or x, y, z in m: forward of the front axle, left of the centreline, above the ground"
-            problems.add(f"{where}: place '{name}'", str(tuple(place)), expected, "Correct it.")
-        elif len(place) == 3 and heights.cg_height is None:
-            found_text = "a height, but the height of the centre of gravity is not known"
+            problems.add(where, str(tuple(place)), expected, "Correct it.")
+        elif len(place) == 2:
+            yield name, (place[0], place[1])
+        elif heights.cg_height is None:
+            found = "a height, but the height of the centre of gravity is not known"
             expected = "cg_height in the campaign, or a place without height"
-            problems.add(f"{where}: place '{name}'", found_text, expected, "Leave z out: vertical numbers need no height.")
+            problems.add(where, found, expected, "Leave z out: vertical numbers need no height.")
         else:
-            chosen[name] = (place[0], place[1]) if len(place) == 2 else (place[0], place[1], place[2])
-    if tracks not in _TRACKS:
-        problems.add(f"{where}: tracks", f"'{tracks}'", f"one of {', '.join(_TRACKS)}", did_you_mean(tracks, _TRACKS))
-    if not 0 < duration < math.inf:
-        problems.add(f"{where}: duration", f"{duration:g} s", "a positive number of seconds", "Correct it.")
-    problems.raise_if_any()
-    kind = next(one for one in _TRACKS if one == tracks)
-    return RideOptions(
-        roads=tuple(found), speeds=tuple(map(float, speeds)), places=chosen, tracks=kind, duration=duration
-    )
+            yield name, (place[0], place[1], place[2])
+
+
+def _checked_tracks(tracks: str, problems: Problems) -> Tracks:
+    for one in _TRACKS:
+        if one == tracks:
+            return one
+    expected = f"one of {', '.join(_TRACKS)}"
+    problems.add(f"{_WHERE}: tracks", f"'{tracks}'", expected, did_you_mean(tracks, _TRACKS))
+    return _TRACKS[0]

@@ -34,7 +34,9 @@ QUANTITIES: Mapping[tuple[str, str], Quantity] = MappingProxyType(
         ("axles", "k_t"): Quantity("N/m", "tyre rate of the quarter car"),
         ("axles", "c_s"): Quantity("N s/m", "damper rate of the quarter car"),
         ("axles", "c_t"): Quantity("N s/m", "tyre damping of the quarter car", (-math.inf, math.inf)),
-        ("axles", "body_frequency"): Quantity("Hz", "natural frequency of the body on the axle, of the quarter car's pole"),
+        ("axles", "body_frequency"): Quantity(
+            "Hz", "natural frequency of the body on the axle, of the quarter car's pole"
+        ),
         ("axles", "body_damping"): Quantity("1", "damping ratio of the body on the axle"),
         ("axles", "hop_frequency"): Quantity("Hz", "natural frequency of the wheel, of the quarter car's pole"),
         ("axles", "hop_damping"): Quantity("1", "damping ratio of the wheel"),

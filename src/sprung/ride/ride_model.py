@@ -93,7 +93,8 @@ class RideModel:
         names
             The parameters, uncertain masses of the load among them; those of the vehicle unless given.
         terms, tracks
-            Model terms, and whether springs and dampers of an axle share their half-distance; those of the vehicle unless given.
+            Model terms, and whether springs and dampers of an axle share their half-distance; those of the vehicle unless
+            given.
         """
         layout, wheelbase = vehicle.layout, vehicle.wheelbase
         terms = vehicle.extras if terms is None else tuple(terms)

@@ -39,8 +39,8 @@ class RoadNumbers:
     speed
         m/s.
     places
-        By name of a place on the body: ``acceleration`` and ``weighted``, vertical, m/s² rms, and ``vibration_dose``, m/s^1.75; of
-        a place with a height ``forward_weighted``, ``left_weighted`` and ``total`` as well.
+        By name of a place on the body: ``acceleration`` and ``weighted``, vertical, m/s² rms, and ``vibration_dose``,
+        m/s^1.75; of a place with a height ``forward_weighted``, ``left_weighted`` and ``total`` as well.
     body
         ``pitch`` and ``roll``: ``acceleration`` and ``weighted``, rad/s² rms.
     wheels
@@ -94,8 +94,8 @@ class RideNumbers:
     peaks
         By transmissibility, ``body_front``, ``wheel_front`` and so on: ``frequency``, Hz, and ``gain``.
     plates
-        By wheel station: what suspension testers would find: ``static_load``, ``least_load`` (EUSAMA), ``least_phase`` (EGEA) and
-        ``resonance``.
+        By wheel station: what suspension testers would find: ``static_load``, ``least_load`` (EUSAMA), ``least_phase`` (EGEA)
+        and ``resonance``.
     roads
         Every road at every speed.
     curves
@@ -139,10 +139,18 @@ class RideNumbers:
             if one.road == road and np.isclose(one.speed, speed):
                 return one
         known = ", ".join(f"{one.road} at {one.speed:g} m/s" for one in self.roads)
-        raise InputError([Problem("ride numbers", f"road {road} at {speed:g} m/s", known, "Ask for it in ride_numbers.")])
+        raise InputError(
+            [Problem("ride numbers", f"road {road} at {speed:g} m/s", known, "Ask for it in ride_numbers.")]
+        )
 
     def items(self) -> Iterator[tuple[str, Estimate]]:
-        """Yield every number with its full name, such as ``axles.front.body_damping`` or ``roads.C@22.2.places.front.weighted``."""
+        """Yield every number with its full name.
+
+        Yields
+        ------
+        (str, Estimate)
+            ``axles.front.body_damping``, ``roads.C@22.2.places.front.weighted`` and so on.
+        """
         for group in ("axles", "half_cars", "peaks", "plates"):
             for place, own in getattr(self, group).items():
                 yield from ((f"{group}.{place}.{name}", estimate) for name, estimate in own.items())
@@ -218,8 +226,8 @@ def ride_numbers(
     """Return ride and inspection numbers of a vehicle, each with its standard uncertainty and 95 % interval.
 
     Uncertainties are propagated from the joint distribution of the parameters, to first order; those of a `Vehicle`, whose
-    parameters are exact, are zero. A vehicle with nonlinear elements is linearised for every road at the amplitudes of its motion
-    (statistical linearisation), and on a suspension tester at those of every frequency (harmonic linearisation).
+    parameters are exact, are zero. A vehicle with nonlinear elements is linearised for every road at the amplitudes of its
+    motion (statistical linearisation), and on a suspension tester at those of every frequency (harmonic linearisation).
 
     Parameters
     ----------
@@ -235,8 +243,8 @@ def ride_numbers(
     load
         What is on the vehicle: a load of the campaign by its name, or any other.
     tracks
-        What the left and the right track have in common: ``isotropic`` (a surface that is alike in every direction), ``same`` or
-        ``independent``.
+        What the left and the right track have in common: ``isotropic`` (a surface that is alike in every direction), ``same``
+        or ``independent``.
     duration
         Of the drive, s, for the vibration dose value.
 
@@ -348,7 +356,9 @@ class _Assembly:
             "independent": "independent profiles left and right",
         }[options.tracks]
         beside = f", {tracks}" if model.vehicle.layout.rolls else ""
-        behind = ", rear wheels behind front wheels by the wheelbase over the speed" if model.vehicle.layout.pitches else ""
+        behind = (
+            ", rear wheels behind front wheels by the wheelbase over the speed" if model.vehicle.layout.pitches else ""
+        )
         yield f"Roads of ISO 8608 with the waviness 2, continued from {low:g} to {high:g} Hz, point contact{beside}{behind}."
         dose = f"VDV of a drive of {options.duration:g} s, Gaussian: (3 T)^(1/4) times the weighted rms."
         yield f"{dose} Accelerations are those of the body itself, under a seat."
@@ -360,7 +370,10 @@ class _Assembly:
                 f"modes and transmissibilities hold on road {drive.road.name} at {drive.speed:.3g} m/s."
             )
         if not self.distribution.is_scaled:
-            yield "The absolute scale is not determined: masses, rates and forces have no value; all other numbers need no scale."
+            yield (
+                "The absolute scale is not determined: masses, rates and forces have no value; all other numbers need no "
+                "scale."
+            )
         yield from self._warnings(estimates)
         yield from (f"Not computed: {reason}." for reason in dict.fromkeys(self.base.failures.values()))
 

@@ -187,13 +187,13 @@ class RoadResponse:
     def suspension_travel(self) -> Real:
         """Root-mean-square travel of each suspension, m, shape (wheel,)."""
         transfer = self.model.travel.at(self.values) @ self.displacements
-        return np.sqrt(mean_squares(transfer, self.spectra).sum(axis=0))
+        return np.asarray(np.sqrt(mean_squares(transfer, self.spectra).sum(axis=0)))
 
     @property
     def wheel_loads(self) -> Real:
         """Root-mean-square dynamic load of each wheel, N, shape (wheel,)."""
         transfer = self.model.tyre_forces(self.values, self.omega, self.displacements)
-        return np.sqrt(mean_squares(transfer, self.spectra).sum(axis=0))
+        return np.asarray(np.sqrt(mean_squares(transfer, self.spectra).sum(axis=0)))
 
 
 def respond(model: RideModel, values: Real, drive: Drive, near: TravelGuess | None = None) -> RoadResponse:

@@ -17,8 +17,8 @@ from numpy.typing import ArrayLike, NDArray
 Complex = NDArray[np.complex128]
 
 Weighting = Literal["W_b", "W_c", "W_d", "W_e", "W_f", "W_j", "W_k"]
-"""Name of a frequency weighting: W_k vertical on a seat, W_d horizontal, W_c horizontal at a back rest, W_e rotations, W_f motion
-sickness, W_j the head of a recumbent person, W_b vertical in rail vehicles."""
+"""Name of a frequency weighting: W_k vertical on a seat, W_d horizontal, W_c horizontal at a back rest, W_e rotations, W_f
+motion sickness, W_j the head of a recumbent person, W_b vertical in rail vehicles."""
 
 _BUTTERWORTH = 1 / math.sqrt(2)
 
