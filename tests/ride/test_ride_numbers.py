@@ -177,6 +177,30 @@ def test_rejected_and_undetermined_results_are_refused() -> None:
     result = identified()
     with pytest.raises(InputError, match="the verdict reject"):
         ride_numbers(replace(result, verdict=Verdict(state="reject", reasons=("no",))))
+    unknown = replace(result.parameters["k_sf"], value=None, std=None, interval95=None, status="unidentifiable")
+    with pytest.raises(InputError, match="no value of k_sf"):
+        ride_numbers(replace(result, parameters={**result.parameters, "k_sf": unknown}))
+
+
+def test_without_roll_there_is_what_needs_no_roll() -> None:
+    """Drops of both sides at once say nothing of roll: on one profile left and right the rest is that of the whole vehicle."""
+    from dataclasses import replace  # noqa: PLC0415
+
+    result = identified()
     unknown = replace(result.parameters["I_xx"], value=None, std=None, interval95=None, status="unidentifiable")
-    with pytest.raises(InputError, match="no value of I_xx"):
-        ride_numbers(replace(result, parameters={**result.parameters, "I_xx": unknown}))
+    lost = dict.fromkeys(("I_xx", "t_f", "t_r"), unknown)
+    found = ride_numbers(replace(result, parameters={**result.parameters, **lost}), roads="C")
+    assert any("I_xx, t_f, t_r" in note for note in found.notes)
+    assert found.options.tracks == "same"
+    whole = ride_numbers(result, roads="C", tracks="same")
+    for place, own in whole.on("C").places.items():
+        for name, estimate in own.items():
+            assert found.on("C").places[place][name].value == pytest.approx(estimate.value, rel=1e-6)
+    assert found.axles["front"]["hop_damping"].value == pytest.approx(
+        whole.axles["front"]["hop_damping"].value, rel=1e-9
+    )
+    assert found.plates["fl"]["least_load"].value is None
+    assert found.half_cars["roll"]["I_xx"].value is None
+    assert found.half_cars["pitch"]["I_yy"].value == pytest.approx(whole.half_cars["pitch"]["I_yy"].value, rel=1e-9)
+    isotropic = ride_numbers(replace(result, parameters={**result.parameters, **lost}), roads="C", tracks="isotropic")
+    assert isotropic.on("C").places["front"]["weighted"].value is None

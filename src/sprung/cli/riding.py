@@ -43,8 +43,13 @@ def ride(
     ] = None,
     load: Annotated[str, typer.Option(metavar="NAME", help="Load of the campaign.")] = "empty",
     tracks: Annotated[
-        str, typer.Option(metavar="KIND", help="Left and right track: isotropic, same or independent.")
-    ] = "isotropic",
+        Optional[str],  # noqa: UP045 (typer reads it)
+        typer.Option(
+            metavar="KIND",
+            help="Left and right track: isotropic, same or independent (default: isotropic; same where roll is not "
+            "determined).",
+        ),
+    ] = None,
     hours: Annotated[float, typer.Option(metavar="H", help="Duration of the drive, for the vibration dose, h.")] = 1.0,
     as_json: Json = False,
 ) -> None:

@@ -27,7 +27,13 @@ _LEAST = 1e-5
 """Smallest such step, as a part of the parameter: rounding and iterations leave smaller ones no digits."""
 
 _UNSCALED = 1e-3
-"""Relative change of a quantity with the absolute scale below which it does not depend on it."""
+"""Relative change of a quantity, as masses and rates are doubled, below which it does not depend on the absolute scale."""
+
+_MOVED, _INDEPENDENT = 1.05, 1e-5
+"""Factor of a parameter that is not determined, and the relative change of a quantity below which it does not depend on it."""
+
+_LATERAL = {"I_xx": 0.28, **dict.fromkeys(("t_f", "t_r", "t_f1", "t_f2", "t_r1", "t_r2"), 0.75)}
+"""Parameters of roll, of which drops without roll say nothing, and usual values: the inertia per sprung mass, m², and m."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,12 +48,15 @@ class ParameterDistribution:
         Of their coordinates, shape (parameter, parameter): relative for those that must be positive, SI for the others.
     is_scaled
         Whether the absolute scale is known; otherwise masses and rates are per kg of total mass.
+    undetermined
+        Parameters of roll that are not determined and have usual values: quantities that depend on them have no value.
     """
 
     names: tuple[str, ...]
     values: Real
     covariance: Real
     is_scaled: bool = True
+    undetermined: tuple[str, ...] = ()
 
     @classmethod
     def of_vehicle(cls, vehicle: Vehicle) -> ParameterDistribution:
@@ -76,7 +85,7 @@ class ParameterDistribution:
             do = "Read result.verdict.reasons; measure again, or correct the campaign."
             raise InputError([Problem(where, "the verdict reject", "accept or doubtful", do)])
         is_scaled = result.scale.known
-        values, stds = _values_of(result, where)
+        values, stds, undetermined = _values_of(result, where)
         correlation = result.correlation if is_scaled else result.scale.correlation
         masses = load.uncertain_masses
         for name, known in masses.items():
@@ -97,7 +106,7 @@ class ParameterDistribution:
         own = np.array(list(values.values()))
         sizes = np.where(_logarithmic(names, own), own, 1.0)
         spread = np.array([stds[name] for name in names]) / sizes
-        return cls(names, own, matrix * np.outer(spread, spread), is_scaled)
+        return cls(names, own, matrix * np.outer(spread, spread), is_scaled, undetermined)
 
     @property
     def std(self) -> Real:
@@ -131,7 +140,8 @@ class ParameterDistribution:
         std
             In the quantities' units, shape (quantity,).
         is_determined
-            Whether they are without the absolute scale, where it is unknown; shape (quantity,).
+            Whether they depend neither on an unknown absolute scale nor on parameters that are not determined; shape
+            (quantity,).
         """
         std, gradient = self.std, np.zeros((len(value), len(self.names)))
         logarithmic = _logarithmic(self.names, self.values)
@@ -141,11 +151,15 @@ class ParameterDistribution:
             step[i] = max(_PART * std[i], _LEAST * sizes[i])
             gradient[:, i] = (function(self.moved(step)) - function(self.moved(-step))) / (2 * step[i])
         found = np.sqrt(np.maximum(np.einsum("qi,ij,qj->q", gradient, self.covariance, gradient), 0.0))
-        if self.is_scaled:
-            return found, np.full(len(value), True)
-        scales = np.array([parameter_of(name).scales for name in self.names])
-        doubled = function(np.where(scales, 2 * self.values, self.values))
-        return found, np.abs(doubled - value) <= _UNSCALED * np.abs(value)
+        is_determined = np.full(len(value), True)
+        for name in self.undetermined:
+            factors = np.where(np.array(self.names) == name, _MOVED, 1.0)
+            is_determined &= np.abs(function(factors * self.values) - value) <= _INDEPENDENT * np.abs(value)
+        if not self.is_scaled:
+            scales = np.array([parameter_of(name).scales for name in self.names])
+            doubled = function(np.where(scales, 2 * self.values, self.values))
+            is_determined &= np.abs(doubled - value) <= _UNSCALED * np.abs(value)
+        return found, is_determined
 
 
 def _logarithmic(names: tuple[str, ...], values: Real) -> NDArray[np.bool_]:
@@ -153,8 +167,11 @@ def _logarithmic(names: tuple[str, ...], values: Real) -> NDArray[np.bool_]:
     return np.array([parameter_of(name).positive for name in names]) & (values > 0)
 
 
-def _values_of(result: Result, where: str) -> tuple[dict[str, float], dict[str, float]]:
-    """Return the parameters of a result and their standard uncertainties, per kg of total mass where the scale is unknown."""
+def _values_of(result: Result, where: str) -> tuple[dict[str, float], dict[str, float], tuple[str, ...]]:
+    """Return the parameters of a result, their standard uncertainties, and those that have usual values instead.
+
+    Where the scale is unknown, masses and rates are per kg of total mass.
+    """
     values, stds, missing = dict[str, float](), dict[str, float](), list[str]()
     for name, estimate in result.parameters.items():
         ratio = None if result.scale.known else result.scale.per_total_mass.get(name)
@@ -166,6 +183,8 @@ def _values_of(result: Result, where: str) -> tuple[dict[str, float], dict[str, 
         else:
             values[name], stds[name] = found[0], found[1]
     problems = Problems()
+    usual = tuple(name for name in missing if name in _LATERAL)
+    missing = [name for name in missing if name not in usual]
     if missing:
         found_text = f"no value of {', '.join(missing)}"
         do = "Read result.unidentifiable: it names what would determine them."
@@ -174,7 +193,11 @@ def _values_of(result: Result, where: str) -> tuple[dict[str, float], dict[str, 
         do = "Identify the campaign again: results of earlier versions lack the correlation of the ratios."
         problems.add(where, "no correlation of the ratios to the total mass", "it, as no scale is known", do)
     problems.raise_if_any()
-    return values, stds
+    values |= {name: _LATERAL[name] * (values["m_s"] if name == "I_xx" else 1.0) for name in usual}
+    stds |= dict.fromkeys(usual, 0.0)
+    order = list(result.parameters)
+    in_order = sorted(values, key=order.index)
+    return {name: values[name] for name in in_order}, stds, usual
 
 
 def _scales(name: str) -> bool:

@@ -110,8 +110,8 @@ def _corner_masses(model: RideModel, values: Real, axle: str) -> tuple[float, fl
     own = [layout.wheels.index(wheel) for wheel in layout.wheels_of(axle)]
     M = model.matrices(values).M
     unsprung = (M @ model.linear.heave)[layout.wheels_at][own].mean()
-    carried = model.static_loads(values)[own].mean() / STANDARD_GRAVITY
-    return float(carried - unsprung), float(unsprung)
+    load = model.static_loads(values)[own].mean() / STANDARD_GRAVITY
+    return float(load - unsprung), float(unsprung)
 
 
 def _quarter_parameters(
@@ -229,10 +229,10 @@ def _rigid_body(model: RideModel, values: Real) -> Real:
     """Return the mass matrix of the body by its rise, pitch and roll, with all that it carries."""
     matrices = model.matrices(values)
     body, massive = model.vehicle.layout.wheels_at.start, model.linear.massive
-    carried = list(range(model.vehicle.layout.wheels_at.stop, massive))
+    attached = list(range(model.vehicle.layout.wheels_at.stop, massive))
     T = np.zeros((len(matrices.M), body))
     T[:body] = np.eye(body)
-    if carried:
-        own, coupling = matrices.K[np.ix_(carried, carried)], matrices.K[carried, :body]
-        T[carried] = -np.linalg.solve(own, coupling)
+    if attached:
+        own, coupling = matrices.K[np.ix_(attached, attached)], matrices.K[attached, :body]
+        T[attached] = -np.linalg.solve(own, coupling)
     return np.asarray(T.T @ matrices.M @ T)

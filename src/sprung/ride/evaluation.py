@@ -145,6 +145,9 @@ def _is_proportional(one: Drive, other: Drive) -> bool:
 def _road_numbers(response: RoadResponse, options: RideOptions) -> Iterator[tuple[Key, float]]:
     """Yield the numbers of one drive."""
     model, values, frequency = response.model, response.values, response.frequency
+    # One profile under left and right wheels does not roll a vehicle whose sides are alike.
+    still = {"phi"} if options.tracks == "same" and model.is_symmetric else set[str]()
+    turning = [angle for angle in model.vehicle.layout.body if angle in _ROTATIONS and angle not in still]
     vertical = np.abs(frequency_weighting("W_k", frequency)) ** 2
     horizontal = np.abs(frequency_weighting("W_d", frequency)) ** 2
     dose = _GAUSSIAN_DOSE * options.duration**0.25
@@ -157,20 +160,18 @@ def _road_numbers(response: RoadResponse, options: RideOptions) -> Iterator[tupl
         if len(place) == 3:
             rows = model.horizontal(values, place)
             along = np.sqrt(horizontal @ response.accelerations(rows))
-            body = model.vehicle.layout.body
-            axes = [axis for axis, angle in (("forward", "theta"), ("left", "phi")) if angle in body]
+            axes = [axis for axis, angle in (("forward", "theta"), ("left", "phi")) if angle in turning]
             squares = [along[("forward", "left").index(axis)] ** 2 for axis in axes]
             for axis, square in zip(axes, squares, strict=True):
                 yield ("places", name, f"{axis}_weighted"), float(np.sqrt(square))
             yield ("places", name, "total"), float(np.sqrt(weighted**2 + sum(squares)))
     rotations = np.abs(frequency_weighting("W_e", frequency)) ** 2
     layout = model.vehicle.layout
-    for coordinate, axis in _ROTATIONS.items():
-        if coordinate in layout.body:
-            row = np.eye(1, model.linear.size, layout.body.index(coordinate))
-            turning = response.accelerations(row)[:, 0]
-            yield ("body", axis, "acceleration"), float(np.sqrt(turning.sum()))
-            yield ("body", axis, "weighted"), float(np.sqrt(rotations @ turning))
+    for angle in turning:
+        row = np.eye(1, model.linear.size, layout.body.index(angle))
+        spectrum = response.accelerations(row)[:, 0]
+        yield ("body", _ROTATIONS[angle], "acceleration"), float(np.sqrt(spectrum.sum()))
+        yield ("body", _ROTATIONS[angle], "weighted"), float(np.sqrt(rotations @ spectrum))
     static, dynamic, travel = model.static_loads(values), response.wheel_loads, response.suspension_travel
     hub = np.sqrt(response.accelerations(model.pads.rows).sum(axis=0))
     for i, wheel in enumerate(model.wheels):

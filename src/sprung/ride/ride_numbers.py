@@ -220,7 +220,7 @@ def ride_numbers(
     speeds: Sequence[float] = (USUAL_SPEED,),
     places: Mapping[str, Sequence[float]] | None = None,
     load: str | Load = EMPTY,
-    tracks: str = "isotropic",
+    tracks: str | None = None,
     duration: float = HOUR,
 ) -> RideNumbers:
     """Return ride and inspection numbers of a vehicle, each with its standard uncertainty and 95 % interval.
@@ -257,18 +257,19 @@ def ride_numbers(
     InputError
         If the verdict is reject, a parameter is not determined, or an option is impossible.
     """
-    carried = _load_of(source, load)
+    on_board = _load_of(source, load)
     if isinstance(source, Vehicle):
         distribution, vehicle, terms, own_tracks = ParameterDistribution.of_vehicle(source), source, None, None
     else:
-        distribution = ParameterDistribution.of_result(source, carried)
+        distribution = ParameterDistribution.of_result(source, on_board)
         values = dict(zip(distribution.names, distribution.values.tolist(), strict=True))
         vehicle = Vehicle.nearest(values, name=source.name, **source.setup.heights)
         terms, own_tracks = source.fit.model, source.fit.tracks
     chosen = _usual_places(vehicle) if places is None else places
+    tracks = tracks or ("same" if distribution.undetermined else "isotropic")
     options = checked_options(roads, speeds, chosen, tracks, duration, vehicle.heights)
     points = [(place[0], place[1]) for place in options.places.values()]
-    model = RideModel.of(vehicle, carried, points, distribution.names, terms, own_tracks)
+    model = RideModel.of(vehicle, on_board, points, distribution.names, terms, own_tracks)
     base = evaluate(model, distribution.values, options)
     return _Assembly(model, distribution, options, base).numbers()
 
@@ -360,7 +361,7 @@ class _Assembly:
             ", rear wheels behind front wheels by the wheelbase over the speed" if model.vehicle.layout.pitches else ""
         )
         yield f"Roads of ISO 8608 with the waviness 2, continued from {low:g} to {high:g} Hz, point contact{beside}{behind}."
-        dose = f"VDV of a drive of {options.duration:g} s, Gaussian: (3 T)^(1/4) times the weighted rms."
+        dose = f"VDV of a drive of {options.duration:g} s, Gaussian: (3 T)^¼ times the weighted rms."
         yield f"{dose} Accelerations are those of the body itself, under a seat."
         if model.nonlinear is not None:
             drive = options.drives[options.reference]
@@ -374,6 +375,9 @@ class _Assembly:
                 "The absolute scale is not determined: masses, rates and forces have no value; all other numbers need no "
                 "scale."
             )
+        if self.distribution.undetermined:
+            names = ", ".join(self.distribution.undetermined)
+            yield f"Not determined: {names}. What depends on roll has no value."
         yield from self._warnings(estimates)
         yield from (f"Not computed: {reason}." for reason in dict.fromkeys(self.base.failures.values()))
 

@@ -24,10 +24,10 @@ _AXLE_ROWS = (
     ("tyre damping, N s/m", "c_t"),
 )
 _PEAK_ROWS = (
-    ("transmissibility to the body, largest", "body", "gain"),
-    ("  at, Hz", "body", "frequency"),
-    ("transmissibility to the wheel, largest", "wheel", "gain"),
-    ("  at, Hz", "wheel", "frequency"),
+    ("largest transmissibility to the body", "body", "gain"),
+    ("frequency of this, Hz", "body", "frequency"),
+    ("largest transmissibility to the wheel", "wheel", "gain"),
+    ("frequency of this, Hz", "wheel", "frequency"),
 )
 _HALF_ROWS = (
     ("sprung mass, kg", "m_s"),
@@ -61,7 +61,7 @@ def ride_tables(numbers: RideNumbers) -> tuple[Table, ...]:
     return (
         _axles(numbers),
         _plates(numbers),
-        _comfort(numbers),
+        *_comfort(numbers),
         *_seats(numbers),
         _wheels(numbers),
         *_half_cars(numbers),
@@ -142,24 +142,28 @@ def _drives(numbers: RideNumbers) -> Iterator[tuple[str, int]]:
         yield f"{one.road}, {3.6 * one.speed:.3g} km/h", i
 
 
-def _comfort(numbers: RideNumbers) -> Table:
+def _comfort(numbers: RideNumbers) -> Iterator[Table]:
+    """Yield the tables of weighted accelerations, and of vibration dose values."""
     places = list(numbers.options.places)
     axes = list(numbers.roads[0].body) if numbers.roads else []
-    headers = ("road", *places, *(f"{axis}, rad/s²" for axis in axes), *(f"VDV {place}" for place in places))
+    headers = ("road", *places, *(f"{axis}, rad/s²" for axis in axes))
     rows = [
         (
             label,
             *(_cell(numbers.roads[i].places[place]["weighted"]) for place in places),
             *(_cell(numbers.roads[i].body[axis]["weighted"]) for axis in axes),
-            *(_cell(numbers.roads[i].places[place]["vibration_dose"]) for place in places),
         )
         for label, i in _drives(numbers)
     ]
-    title = (
-        "Weighted acceleration (ISO 2631-1): vertical W_k, m/s² rms; pitch and roll W_e; vibration dose value, m/s^1.75"
-    )
-    spare = (*headers[1 + len(places) + len(axes) :], *headers[1 + len(places) : 1 + len(places) + len(axes)])
-    return Table(title, headers, tuple(rows), frozenset(headers[1:]), spare)
+    turning = f"; {' and '.join(axes)} W_e" if axes else ""
+    title = f"Weighted acceleration (ISO 2631-1): vertical W_k, m/s² rms{turning}"
+    yield Table(title, headers, tuple(rows), frozenset(headers[1:]), headers[1 + len(places) :])
+    doses = [
+        (label, *(_cell(numbers.roads[i].places[place]["vibration_dose"]) for place in places))
+        for label, i in _drives(numbers)
+    ]
+    title = f"Vibration dose value of {numbers.options.duration / 3600:g} h, vertical, m/s^1.75"
+    yield Table(title, ("road", *places), tuple(doses), frozenset(places))
 
 
 def _seats(numbers: RideNumbers) -> Iterator[Table]:

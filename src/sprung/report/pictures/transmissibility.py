@@ -35,7 +35,7 @@ def transmissibility_picture(numbers: RideNumbers) -> Picture:
         for (name, curve), role in zip(own.items(), _ROLES, strict=False):
             label = name.partition("_")[2]
             marks.append(Curve(curve.frequency, curve.gain, role, label, 1.6, band=NORMAL_95 * curve.std))
-        panels.append(Panel(Axis("over the road's height", 0.0, top), tuple(marks), note=note))
+        panels.append(Panel(Axis("gain", 0.0, top), tuple(marks), height=1.3, note=note))
     peaks = "; ".join(
         f"{name.replace('_', ' ')} {peak['gain']:.3g} at {peak['frequency']:.3g} Hz"
         for name, peak in numbers.peaks.items()
