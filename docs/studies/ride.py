@@ -177,23 +177,23 @@ def page(outcomes: Sequence[Outcome]) -> str:
     sections = [f"### {one.test.label}\n\n{_rejections(one)}{table(head, one.rows)}\n" for one in outcomes]
     return f"""# Ride numbers
 
-Every [ride number](../ride.md) has a 95 % interval that follows from the joint distribution of the parameters to first order. Do 95 % of
-these intervals contain the true value?
+Every [ride number](../ride.md) has a 95 % interval that follows from the joint distribution of the parameters to first order.
+Do 95 % of these intervals contain the true value?
 
 ## Method
 
 Campaigns as in the study of [accuracy relative to the bound](at-the-bound.md): drops from blocks of 5 cm under all wheels and
 under the wheels of each end and side, free decay for {DURATION:g} s, {RATE:g} Hz, white noise; what is weighed has a standard
-uncertainty of {100 * WEIGHING:g} %. Each campaign is identified with the true model terms, and `sprung.ride.ride_numbers` computes
-all numbers on a road of class {ROAD} at 80 km/h. The truth is what the same function gives for the vehicle that was simulated:
-the study tests the intervals, not the methods, which the tests compare with closed forms and simulations.
+uncertainty of {100 * WEIGHING:g} %. Each campaign is identified with the true model terms, and `sprung.ride.ride_numbers`
+computes all numbers on a road of class {ROAD} at 80 km/h. The truth is what the same function gives for the vehicle that was
+simulated: the study tests the intervals, not the methods, which the tests compare with closed forms and simulations.
 
 ## Result
 
-{many} campaigns in every case. A coverage from so many has a standard uncertainty of {spread:.1f} %, and the numbers of a case are
-strongly correlated. Of {len(every)} numbers {inside} are within {low:g} to {high:g} %, and {chance} within three standard uncertainties
-of 95 %. The mean over all is {np.mean([covered for *_, covered in every]):.1f} %; the farthest from 95 % is {worst_name} with {worst:.1f} %
-({worst_case.test.label}).
+{many} campaigns in every case. A coverage from so many has a standard uncertainty of {spread:.1f} %, and the numbers of a case
+are strongly correlated. Of {len(every)} numbers {inside} are within {low:g} to {high:g} %, and {chance} within three standard
+uncertainties of 95 %. The mean over all is {np.mean([covered for *_, covered in every]):.1f} %; the farthest from 95 % is
+`{worst_name}` with {worst:.1f} % ({worst_case.test.label}).
 
 {chr(10).join(sections)}
 Every number is in [ride.json](ride.json).
