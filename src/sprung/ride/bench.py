@@ -41,7 +41,7 @@ PHASE_BAND = (6.0, 18.0)
 PHASE_LIMIT = float(np.deg2rad(35.0))
 """Least phase shift of a damper that passes, rad."""
 
-_STEP = 0.1
+_STEP = 0.25
 """Hz, of the search."""
 
 _NEAR = 0.1

@@ -77,7 +77,9 @@ class Evaluation:
     failures: Mapping[Key, str] = field(default_factory=dict)
 
 
-def evaluate(model: RideModel, values: Real, options: RideOptions, near: Neighbour | None = None) -> Evaluation:
+def evaluate(
+    model: RideModel, values: Real, options: RideOptions, near: Neighbour | None = None, *, has_neighbours: bool = True
+) -> Evaluation:
     """Return all ride numbers of a vehicle.
 
     Parameters
@@ -88,6 +90,8 @@ def evaluate(model: RideModel, values: Real, options: RideOptions, near: Neighbo
         Roads, speeds and places.
     near
         Of an evaluation at neighbouring parameters.
+    has_neighbours
+        Whether such evaluations will follow.
 
     Returns
     -------
@@ -96,6 +100,7 @@ def evaluate(model: RideModel, values: Real, options: RideOptions, near: Neighbo
     numbers, failures = dict[Key, float](), dict[Key, str]()
     guesses, plates, peaks = dict[int, TravelGuess | None](), dict[str, PlateTest | None](), dict[str, float]()
     reference: EquivalentElements | None = None
+    before: TravelGuess | None = None
     drives = options.drives
     for i, drive in enumerate(drives):
         alike = next((j for j in range(i) if _is_proportional(drives[j], drive)), None)
@@ -113,11 +118,13 @@ def evaluate(model: RideModel, values: Real, options: RideOptions, near: Neighbo
         if near is not None and i not in near.travels:
             continue
         try:
-            response = respond(model, values, drive, None if near is None else near.travels[i])
+            # The road before is the nearest that is known of a first response.
+            response = respond(model, values, drive, before if near is None else near.travels[i])
         except NotConvergedError as error:
             failures["roads", f"{i}"] = str(error)
             continue
-        guesses[i] = guess_of(response) if near is None else near.travels[i]
+        guesses[i] = near.travels[i] if near is not None else guess_of(response) if has_neighbours else None
+        before = guesses[i]
         if reference is None and i >= options.reference:
             reference = response.equivalents
         numbers |= {("roads", f"{i}", *key): value for key, value in _road_numbers(response, options)}
@@ -126,14 +133,19 @@ def evaluate(model: RideModel, values: Real, options: RideOptions, near: Neighbo
     else:
         of_axles = axle_numbers(model, values, reference)
         numbers |= {("axles", axle, name): value for axle, own in of_axles.items() for name, value in own.items()}
-        for name, frequency, gain in _peaks(model, values, reference, near):
+        between = {
+            axle: float(np.sqrt(own["body_frequency"] * own["hop_frequency"]))
+            for axle, own in of_axles.items()
+            if {"body_frequency", "hop_frequency"} <= own.keys()
+        }
+        for name, frequency, gain in _peaks(model, values, options, reference, near, between):
             peaks[name] = frequency
             numbers["peaks", name, "frequency"], numbers["peaks", name, "gain"] = frequency, gain
     halves = half_car_numbers(model, values)
     numbers |= {("half_cars", plane, name): value for plane, own in halves.items() for name, value in own.items()}
     for key, value in _plate_numbers(model, values, options, near, plates, failures):
         numbers[key] = value
-    curves = {} if ("axles",) in failures else _curves(model, values, reference, CURVE_FREQUENCIES)
+    curves = {} if ("axles",) in failures else _curves(model, values, options, reference, CURVE_FREQUENCIES)
     return Evaluation(numbers, curves, Neighbour(guesses, plates, peaks), failures)
 
 
@@ -219,7 +231,7 @@ def _plate_numbers(
 
 
 def _curves(
-    model: RideModel, values: Real, equivalents: EquivalentElements | None, frequency: Real
+    model: RideModel, values: Real, options: RideOptions, equivalents: EquivalentElements | None, frequency: Real
 ) -> dict[str, Complex]:
     """Return transmissibilities at frequencies in Hz: all wheels move alike."""
     omega = 2 * np.pi * frequency
@@ -236,7 +248,8 @@ def _curves(
         hub, over = hubs[:, own].mean(axis=1), travel[:, own].mean(axis=1)
         named = {"body": hub + over, "wheel": hub, "travel": over, "load": forces[:, own].mean(axis=1)}
         found |= {curve_name(kind, axle): curve for kind, curve in named.items()}
-    return found
+    points = together @ model.point.at(values).T
+    return found | {f"place_{name}": points[:, i] for i, name in enumerate(options.places)}
 
 
 def curve_name(kind: str, axle: str) -> str:
@@ -249,28 +262,46 @@ AXLE_NAMES = {"f": "front", "r": "rear", "": "axle"}
 
 
 def _peaks(
-    model: RideModel, values: Real, equivalents: EquivalentElements | None, near: Neighbour | None
+    model: RideModel,
+    values: Real,
+    options: RideOptions,
+    equivalents: EquivalentElements | None,
+    near: Neighbour | None,
+    between: Mapping[str, float],
 ) -> Iterator[tuple[str, float, float]]:
-    """Yield the peaks of the transmissibilities to body and wheel: name, frequency in Hz and gain."""
-    axles = model.vehicle.layout.axles
-    names = [curve_name(kind, axle) for axle in axles for kind in ("body", "wheel")]
-    centres: Mapping[str, float]
-    if near is None:
-        curves = _curves(model, values, equivalents, CURVE_FREQUENCIES)
-        centres = {name: float(CURVE_FREQUENCIES[np.argmax(np.abs(curves[name]))]) for name in names}
-        # Twice: the parabola is then centred on the peak.
-        centres = {name: peak for name, peak, _ in _interpolated(model, values, equivalents, centres)}
-    else:
-        centres = near.peaks
-    yield from _interpolated(model, values, equivalents, centres)
+    """Yield the peaks of the transmissibilities to body and wheel: name, frequency in Hz and gain.
+
+    That of the wheel is above a frequency between those of body and wheel, by axle; a wheel that is damped much has none.
+    """
+    if near is not None:
+        yield from _interpolated(model, values, options, equivalents, near.peaks)
+        return
+    curves = _curves(model, values, options, equivalents, CURVE_FREQUENCIES)
+    centres = {}
+    for axle in model.vehicle.layout.axles:
+        for kind, low in (("body", 0.0), ("wheel", between.get(axle, 0.0))):
+            name = curve_name(kind, axle)
+            gain = np.where(low <= CURVE_FREQUENCIES, np.abs(curves[name]), -1.0)
+            top = int(np.argmax(gain))
+            if 0 < top < len(gain) - 1 and gain[top - 1] >= 0:
+                centres[name] = float(CURVE_FREQUENCIES[top])
+    # Twice: the parabola is then centred on the peak.
+    centres = {name: peak for name, peak, _ in _interpolated(model, values, options, equivalents, centres)}
+    yield from _interpolated(model, values, options, equivalents, centres)
 
 
 def _interpolated(
-    model: RideModel, values: Real, equivalents: EquivalentElements | None, centres: Mapping[str, float]
+    model: RideModel,
+    values: Real,
+    options: RideOptions,
+    equivalents: EquivalentElements | None,
+    centres: Mapping[str, float],
 ) -> Iterator[tuple[str, float, float]]:
+    if not centres:
+        return
     ratios = _NEAR ** np.array([-1.0, 0.0, 1.0])
     frequency = np.concatenate([centre * ratios for centre in centres.values()])
-    curves = _curves(model, values, equivalents, frequency)
+    curves = _curves(model, values, options, equivalents, frequency)
     for i, (name, centre) in enumerate(centres.items()):
         low, middle, high = np.abs(curves[name][3 * i : 3 * i + 3])
         first, second = (high - low) / 2, high - 2 * middle + low

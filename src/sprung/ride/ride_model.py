@@ -163,7 +163,8 @@ class RideModel:
         found = K + iw * C + iw**2 * M
         if of_rows is not None:
             directions, rows = self.forces.directions(values), self.forces.rows.at(values)
-            found = found + np.einsum("ri,fr,rj->fij", directions, of_rows, rows)
+            each = (directions[:, :, None] * rows[:, None, :]).reshape(len(rows), -1)
+            found = found + (of_rows @ each).reshape(len(omega), *K.shape)
         return np.asarray(found)
 
     def tyre_stiffness(self, values: Real, omega: Real) -> Complex:

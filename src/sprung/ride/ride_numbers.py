@@ -99,7 +99,8 @@ class RideNumbers:
     roads
         Every road at every speed.
     curves
-        Transmissibilities by name: ``body_front``, ``wheel_front``, ``travel_front``, ``load_front`` and so on.
+        Transmissibilities by name: ``body_front``, ``wheel_front``, ``travel_front``, ``load_front`` and so on, and of each
+        place, such as ``place_seat``.
     notes
         How the numbers are to be read, and what could not be computed; sentences.
     """
@@ -270,7 +271,8 @@ def ride_numbers(
     options = checked_options(roads, speeds, chosen, tracks, duration, vehicle.heights)
     points = [(place[0], place[1]) for place in options.places.values()]
     model = RideModel.of(vehicle, on_board, points, distribution.names, terms, own_tracks)
-    base = evaluate(model, distribution.values, options)
+    is_uncertain = bool(distribution.std.any()) or bool(distribution.undetermined) or not distribution.is_scaled
+    base = evaluate(model, distribution.values, options, has_neighbours=is_uncertain)
     return _Assembly(model, distribution, options, base).numbers()
 
 
