@@ -204,3 +204,19 @@ def test_without_roll_there_is_what_needs_no_roll() -> None:
     assert found.half_cars["pitch"]["I_yy"].value == pytest.approx(whole.half_cars["pitch"]["I_yy"].value, rel=1e-9)
     isotropic = ride_numbers(replace(result, parameters={**result.parameters, **lost}), roads="C", tracks="isotropic")
     assert isotropic.on("C").places["front"]["weighted"].value is None
+
+
+def test_results_of_earlier_versions_lack_a_correlation() -> None:
+    """They can be read, and their ride numbers are refused with the remedy."""
+    from dataclasses import replace  # noqa: PLC0415
+
+    from sprung.estimation import Scale  # noqa: PLC0415
+    from sprung.results.plain import plain_document, record_from  # noqa: PLC0415
+
+    result = identified(weighed=False)
+    document = plain_document(result.scale)
+    del document["correlation"]
+    earlier = record_from(Scale, document)
+    assert earlier.per_total_mass == result.scale.per_total_mass
+    with pytest.raises(InputError, match="Identify the campaign again"):
+        ride_numbers(replace(result, scale=earlier))

@@ -141,6 +141,8 @@ def spectral_matrix(
         same_side = np.sign(left)[:, None] == np.sign(left)[None, :]
         shared = np.broadcast_to(same_side.astype(float), (len(frequency), len(left), len(left)))
     else:
-        shared = coherence_of_tracks(frequency[:, None, None] / speed, apart[None], road.waviness)
+        distances, place = np.unique(apart, return_inverse=True)
+        each = coherence_of_tracks(frequency[:, None] / speed, distances, road.waviness)
+        shared = each[:, place.reshape(apart.shape)]
     spectrum = road.spectrum(frequency, speed)[:, None, None]
     return np.asarray(spectrum * shared * delay[:, :, None] * delay[:, None, :].conj())
