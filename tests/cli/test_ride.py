@@ -59,6 +59,7 @@ def test_without_scale_and_roll_there_is_what_needs_neither() -> None:
     assert said.json["plates"]["fl"]["least_load"]["value"] is None
     text = run("ride", RESULTS / "unidentifiable.json", "--road", "C", columns=200).out
     assert "nan" not in text.split()
+    assert "EUSAMA, %" not in text
     assert "What depends on roll has no value" in text
 
 

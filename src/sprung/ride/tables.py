@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -45,6 +46,10 @@ _HALF_ROWS = (
 )
 
 
+_NOTHING = ("", "-")
+"""Cells without a number."""
+
+
 def ride_tables(numbers: RideNumbers) -> tuple[Table, ...]:
     """Return the tables of ride numbers.
 
@@ -56,9 +61,9 @@ def ride_tables(numbers: RideNumbers) -> tuple[Table, ...]:
     Returns
     -------
     tuple of Table
-        Axles, suspension tester, comfort and wheels on each road, half cars.
+        Axles, suspension tester, comfort and wheels on each road, half cars; without rows in which nothing is determined.
     """
-    return (
+    tables = (
         _axles(numbers),
         _plates(numbers),
         *_comfort(numbers),
@@ -66,6 +71,11 @@ def ride_tables(numbers: RideNumbers) -> tuple[Table, ...]:
         _wheels(numbers),
         *_half_cars(numbers),
     )
+    trimmed = (
+        replace(table, rows=tuple(row for row in table.rows if any(cell not in _NOTHING for cell in row[1:])))
+        for table in tables
+    )
+    return tuple(table for table in trimmed if table.rows)
 
 
 def _cell(estimate: Estimate | None, factor: float = 1.0) -> str:
@@ -79,9 +89,11 @@ def _cell(estimate: Estimate | None, factor: float = 1.0) -> str:
 
 
 def _rows(names: Sequence[tuple[str, str]], columns: Sequence[Mapping[str, Estimate]]) -> Iterator[tuple[str, ...]]:
+    """Yield the rows of numbers that any of the columns has, as far as they are determined."""
     for label, name in names:
-        if any(name in column for column in columns):
-            yield (label, *(_cell(column[name]) if name in column else "" for column in columns))
+        cells = [_cell(column[name]) if name in column else "" for column in columns]
+        if any(cell not in _NOTHING for cell in cells):
+            yield (label, *cells)
 
 
 def _axles(numbers: RideNumbers) -> Table:
