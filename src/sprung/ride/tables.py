@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from sprung.ride.bench import PHASE_LIMIT
-from sprung.ride.ride_numbers import RideNumbers
+from sprung.ride.records import RideNumbers
 from sprung.tables import Table
 from sprung.uncertainty import Estimate, round_by_uncertainty
 
