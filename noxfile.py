@@ -126,6 +126,7 @@ def studies(session: nox.Session) -> None:
         "engine",
         "fall",
         "differences",
+        "ride",
         "modal",
         "real_cars",
     ):

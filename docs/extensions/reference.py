@@ -30,6 +30,7 @@ ROOMS = (
     "paper",
     "analysis",
     "modal_survey",
+    "ride",
     "results",
     "checking",
     "drafting",

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from sprung import paper as paper
     from sprung import plot as plot
     from sprung import report as report
+    from sprung import ride as ride
     from sprung import study as study
     from sprung.analysis import identify
     from sprung.campaign import Campaign, Drop, DropTest, read, schema_text, to_sep005, write
@@ -86,7 +87,7 @@ _HOME = {
     "validate": "study",
     "write": "campaign",
 }
-_ROOMS = ("analysis", "campaign", "export", "files", "paper", "plot", "report", "study")
+_ROOMS = ("analysis", "campaign", "export", "files", "paper", "plot", "report", "ride", "study")
 
 
 def __getattr__(name: str) -> Any:

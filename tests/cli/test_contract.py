@@ -22,6 +22,7 @@ COMMANDS = (
     "report",
     "validate",
     "compare",
+    "ride",
     "plan",
     "simulate",
     "schema",

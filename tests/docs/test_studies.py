@@ -182,3 +182,15 @@ def test_differences(tmp_path: Path) -> None:
         assert 0.2 < case["z_rms"] < (3 if case["change"] == 0 else 30)
     # 75 N s/m of 1500, told to 8 or so.
     assert [case["damper_seen"] for case in numbers["cases"] if case["change"] == 0.05] == [1.0, 1.0]
+
+
+@pytest.mark.long
+def test_ride(tmp_path: Path) -> None:
+    page, numbers = study("ride.py", tmp_path, "--campaigns", "1")
+    assert "nan" not in page
+    assert len(numbers["cases"]) == 5
+    for case in numbers["cases"]:
+        assert case["campaigns"] == 1
+        for one in case["numbers"].values():
+            assert one["coverage_percent"] in (0, 100)
+            assert one["rms_error_over_std"] < 6

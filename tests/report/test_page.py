@@ -65,7 +65,7 @@ def test_it_says_everything(result: Result, page: str) -> None:
     sections = re.findall(r'<section id="([a-z]+)"', page)
     assert sections == [
         *("characteristics", "parameters", "geometry", "known", "recordings", "spectra", "stabilisation", "modes"),
-        *("comparison", "amplitude", "correlation", "next", "trace", "settings", "literature"),
+        *("comparison", "ride", "amplitude", "correlation", "next", "trace", "settings", "literature"),
     ]
     assert [name for name in sections if f'href="#{name}"' not in page] == []
     assert page.index("The estimates may be used") < page.index('id="parameters"')

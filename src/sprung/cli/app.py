@@ -26,6 +26,7 @@ ORDER = (
     "modal",
     "plan",
     "compare",
+    "ride",
     "simulate",
     "paper",
     "schema",

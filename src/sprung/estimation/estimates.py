@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -58,23 +58,6 @@ class Unidentifiable:
 
 @shown
 @dataclass(frozen=True)
-class Scale:
-    """The absolute scale, and ratios that do not need it.
-
-    Attributes
-    ----------
-    known
-        Whether load, weighing or another known quantity fixes masses and rates absolutely.
-    per_total_mass
-        Masses, inertias and rates divided by the empty vehicle's total mass, as far as they are determined.
-    """
-
-    known: bool
-    per_total_mass: dict[str, Ratio]
-
-
-@shown
-@dataclass(frozen=True)
 class Correlation:
     """Correlation of the estimated parameters.
 
@@ -88,6 +71,26 @@ class Correlation:
 
     names: tuple[str, ...]
     matrix: tuple[tuple[float, ...], ...]
+
+
+@shown
+@dataclass(frozen=True)
+class Scale:
+    """The absolute scale, and ratios that do not need it.
+
+    Attributes
+    ----------
+    known
+        Whether load, weighing or another known quantity fixes masses and rates absolutely.
+    per_total_mass
+        Masses, inertias and rates divided by the empty vehicle's total mass, as far as they are determined.
+    correlation
+        Of these ratios and the other estimated parameters, where the scale is unknown; empty where it is known.
+    """
+
+    known: bool
+    per_total_mass: dict[str, Ratio]
+    correlation: Correlation = field(default_factory=lambda: Correlation((), ()))
 
 
 def to_estimates(fit: FitStatistics, known: Mapping[str, KnownValue]) -> dict[str, Estimate]:
@@ -158,15 +161,30 @@ def scale_of(fit: FitStatistics) -> Scale:
     """
     total, gradient = evaluate_quantity("total_mass", fit.names, fit.values)
     mass_direction = gradient * fit.slopes / total
-    per_total_mass = {}
+    per_total_mass, directions = {}, {}
     for i, name in enumerate(fit.names):
+        own = fit.slopes[i] * np.eye(len(fit.names))[i]
         if parameter_of(name).scales and not name.startswith(LOAD_MASS):
             ratio = float(fit.values[i]) / total
-            direction = (fit.slopes[i] * np.eye(len(fit.names))[i] - fit.values[i] * mass_direction) / total
-            std = fit.spread(direction, fit.size(name) / total)
+            own = (own - fit.values[i] * mass_direction) / total
+            std = fit.spread(own, fit.size(name) / total)
             if std is not None:
                 per_total_mass[name] = Ratio(ratio, std, _PER_MASS[parameter_of(name).unit])
-    return Scale(fit.spread(mass_direction, 1.0) is not None, per_total_mass)
+        elif not is_nuisance(name):
+            std = fit.spread(own, fit.size(name))
+        else:
+            continue
+        if std:
+            directions[name] = own / std
+    known = fit.spread(mass_direction, 1.0) is not None
+    return Scale(known, per_total_mass, Correlation((), ()) if known else _correlation(fit, directions))
+
+
+def _correlation(fit: FitStatistics, directions: Mapping[str, Real]) -> Correlation:
+    """Return the correlation of quantities, from their gradients by the coordinates over their standard uncertainties."""
+    gradients = np.array(list(directions.values())).reshape(len(directions), len(fit.names))
+    matrix = gradients @ fit.relative_covariance @ gradients.T
+    return Correlation(tuple(directions), tuple(tuple(float(entry) for entry in row) for row in matrix))
 
 
 def unidentifiable_combinations(fit: FitStatistics, parameters: Mapping[str, Estimate]) -> tuple[Unidentifiable, ...]:

@@ -26,6 +26,7 @@ from sprung.report.pictures.parameters import parameters_picture
 from sprung.report.pictures.recordings import landing_picture, recording_picture
 from sprung.report.pictures.spectra import spectra_picture
 from sprung.report.pictures.stability import stability_picture
+from sprung.report.pictures.transmissibility import transmissibility_picture
 from sprung.report.pictures.wire_frame import BODY_EDGES, STRUTS, wire_frame
 from sprung.report.sketch.shapes import Disc, Drawing, Stroke, TextShape
 from sprung.report.sketch.sheet import blank_sketch, sketch_sheet
@@ -39,6 +40,7 @@ from sprung.report.terminal.modal import modes_view
 from sprung.report.terminal.paper import paper_view
 from sprung.report.terminal.plan import plan_view
 from sprung.report.terminal.result import result_view
+from sprung.report.terminal.ride import ride_view
 from sprung.report.terminal.truth import truth_view
 from sprung.report.terminal.validation import validation_view
 
@@ -87,12 +89,14 @@ __all__ = [
     "render_report",
     "report_html",
     "result_view",
+    "ride_view",
     "save_result",
     "sketch_sheet",
     "sketch_svg",
     "spectra_picture",
     "stability_picture",
     "text_of",
+    "transmissibility_picture",
     "truth_view",
     "validation_view",
     "vehicle_sketch",

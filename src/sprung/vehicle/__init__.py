@@ -18,9 +18,10 @@ from sprung.vehicle.elements import (
     Element,
     linear_elements,
     stiffened_air_springs,
+    travels,
 )
 from sprung.vehicle.finite_rotation import body_sinking, second_order_readings
-from sprung.vehicle.force_laws import ElementInput
+from sprung.vehicle.force_laws import ElementInput, ForceLaw
 from sprung.vehicle.heights import LEVEL, CarriedAt, Heights
 from sprung.vehicle.kinematics import Row, body_point, coordinates, heave, state_variables
 from sprung.vehicle.layout import (
@@ -36,6 +37,7 @@ from sprung.vehicle.layout import (
     VehicleModel,
     Wheel,
     half_distances,
+    inboard_shares,
     layout_of,
     parameter_name,
     wheelbase_of,
@@ -108,6 +110,7 @@ __all__ = [
     "Element",
     "ElementInput",
     "Finite",
+    "ForceLaw",
     "Heights",
     "Item",
     "Layout",
@@ -151,6 +154,7 @@ __all__ = [
     "half_distances",
     "heave",
     "highest_derivatives",
+    "inboard_shares",
     "integrate_near",
     "is_nuisance",
     "is_of_sensor",
@@ -172,6 +176,7 @@ __all__ = [
     "state_variables",
     "stiffened_air_springs",
     "terms_of",
+    "travels",
     "uncertainties_of",
     "wheel_loads",
     "wheelbase_of",

@@ -139,7 +139,22 @@ def stiffened_air_springs(
 
 
 def travels(tracks: Tracks, extras: Collection[str], wheelbase: float) -> Callable[[Wheel, LinearLaw], Row]:
-    """Return the function that gives the travel of the spring or damper at a wheel station."""
+    """Return the function that gives the travel of the spring or damper at a wheel station.
+
+    Parameters
+    ----------
+    tracks
+        Whether springs and dampers of an axle share their half-distance.
+    extras
+        Any of `EXTRAS`.
+    wheelbase
+        m; for a body that twists or bends.
+
+    Returns
+    -------
+    callable
+        Of the wheel station and the law, ``spring`` or ``damper``, to the row of the travel, positive in rebound.
+    """
     distances = half_distances(tracks)
     shares = inboard_shares(tracks) if "rigid-axle" in extras else {}
 

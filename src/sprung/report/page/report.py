@@ -117,6 +117,7 @@ def _sections(result: Result, unfolded: bool, omissions: list[str]) -> Iterator[
         ("stabilisation", "Stabilisation diagram", "pictures.html", lambda: sections.stabilisation(result)),
         ("modes", "Modes", "modes.html", lambda: sections.modes(result)),
         ("comparison", "Measured and simulated", "motions.html", lambda: sections.motions(result, unfolded)),
+        ("ride", "Ride and inspection", "pictures.html", lambda: sections.riding(result)),
         ("amplitude", "Frequency and damping against amplitude", "pictures.html", lambda: sections.amplitude(result)),
         ("correlation", "Correlation of the parameters", "correlation.html", lambda: sections.correlation(result)),
         ("next", "What to measure next", "next.html", lambda: sections.next_step(result)),

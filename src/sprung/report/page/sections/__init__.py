@@ -4,6 +4,7 @@ from sprung.report.page.sections.drops import motions, recordings
 from sprung.report.page.sections.geometry import geometry
 from sprung.report.page.sections.numbers import characteristics, correlation, curves, known, parameters
 from sprung.report.page.sections.provenance import literature, next_step, settings, trace
+from sprung.report.page.sections.riding import riding
 from sprung.report.page.sections.vibrations import amplitude, modes, spectra, stabilisation
 
 __all__ = [
@@ -19,6 +20,7 @@ __all__ = [
     "next_step",
     "parameters",
     "recordings",
+    "riding",
     "settings",
     "spectra",
     "stabilisation",
