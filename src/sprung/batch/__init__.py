@@ -6,7 +6,7 @@ from sprung.batch.executor import Executor, choose_executor
 from sprung.batch.local_workers import LocalWorkers
 from sprung.batch.locking import folder_lock
 from sprung.batch.run import BatchSummary, run_batch
-from sprung.batch.shards import ShardFolder, read_rows
+from sprung.batch.shards import ShardFolder, read_rows, write_table
 from sprung.batch.task import Columns, Failure, Kind, Row, Task, Work, content_key
 
 __all__ = [
@@ -29,4 +29,5 @@ __all__ = [
     "folder_lock",
     "read_rows",
     "run_batch",
+    "write_table",
 ]

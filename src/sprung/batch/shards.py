@@ -129,21 +129,7 @@ class ShardFolder:
 
     def _replace(self, shard: int, rows: Sequence[Row]) -> None:
         """Write a file aside and rename it."""
-        target = self.path(shard)
-        new = target.with_name(_NEW.format(name=target.name))
-        try:
-            with new.open("wb") as file:
-                file.write(_parquet(rows, _schema(self._columns, self._content)))
-                file.flush()
-                os.fsync(file.fileno())  # a name must never stand for content that a power cut would lose
-            new.replace(target)
-        except OSError as error:
-            with suppress(OSError):
-                new.unlink(missing_ok=True)
-            is_full = error.errno in {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
-            found = "no space for more rows" if is_full else f"a file that cannot be written ({error.strerror or error})"
-            do = "Make room, and start the command again: what was written before is whole and is not done again."
-            raise InputError([Problem(str(target), found, "a place to write to", do)]) from error
+        _write_aside(self.path(shard), _parquet(rows, _schema(self._columns, self._content)))
         self._sizes[shard] = len(rows)
 
     def _remove_unfinished(self) -> None:
@@ -177,6 +163,55 @@ class ShardFolder:
                 raise InputError([Problem(str(path), found, "one row for each campaign", do)])
             self.index[campaign] = Entry(key, status, int(shard))
         self._sizes[int(shard)] = table.num_rows
+
+
+def write_table(folder: str | os.PathLike[str], name: str, rows: Sequence[Row], columns: Columns) -> Path:
+    """Write rows as one Parquet file, whole or not at all.
+
+    Parameters
+    ----------
+    folder
+        Made if it does not exist.
+    name
+        Of the file, without suffix; an earlier one is replaced.
+    rows
+        In order.
+    columns
+        Of the rows.
+
+    Returns
+    -------
+    Path
+        Of the file.
+
+    Raises
+    ------
+    InputError
+        If it cannot be written, or pyarrow is not installed.
+    """
+    require_parquet()
+    target = Path(folder) / f"{name}.parquet"
+    _write_aside(target, _parquet(rows, _schema(columns, name)))
+    return target
+
+
+def _write_aside(target: Path, content: bytes) -> None:
+    """Write a file under another name and rename it."""
+    new = target.with_name(_NEW.format(name=target.name))
+    try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        with new.open("wb") as file:
+            file.write(content)
+            file.flush()
+            os.fsync(file.fileno())  # a name must never stand for content that a power cut would lose
+        new.replace(target)
+    except OSError as error:
+        with suppress(OSError):
+            new.unlink(missing_ok=True)
+        is_full = error.errno in {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
+        found = "no space for more rows" if is_full else f"a file that cannot be written ({error.strerror or error})"
+        do = "Make room, and start the command again: what was written before is whole and is not done again."
+        raise InputError([Problem(str(target), found, "a place to write to", do)]) from error
 
 
 def require_parquet() -> None:

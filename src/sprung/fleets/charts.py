@@ -27,6 +27,9 @@ inertia and rate alike; seconds that are too long make rates too small."""
 _ROUNDS = 8
 """Most repetitions of charts and population."""
 
+_SUSPICIOUS = 3.0
+"""Score of a single parameter above which a vehicle is left out of the population that it is first judged by."""
+
 
 @shown
 @dataclass(frozen=True, slots=True)
@@ -111,6 +114,9 @@ class ControlChart:
         Average number of vehicles between two false alarms of each chart, dimensionless.
     vehicle_alarms, rig_alarms
         In the order of the tests.
+    offsets
+        What moves the coordinates of a vehicle to the rig as it is at the end, dimensionless, shape (vehicle, parameter): 0
+        since the last shift.
     """
 
     vehicle_scores: Real
@@ -120,6 +126,7 @@ class ControlChart:
     run_length: float
     vehicle_alarms: tuple[VehicleAlarm, ...]
     rig_alarms: tuple[RigAlarm, ...]
+    offsets: Real
 
 
 def chart_vehicles(estimates: FleetEstimates) -> tuple[ControlChart, Population]:
@@ -145,18 +152,19 @@ def chart_vehicles(estimates: FleetEstimates) -> tuple[ControlChart, Population]
     width = len(estimates.names)
     rig_limit = alarm_limit(width)
     in_control, positions = np.ones(estimates.count, dtype=bool), estimates.positions
-    alarms: set[object] = set()
-    for _ in range(_ROUNDS):
+    alarms: set[object] | None = None
+    for number in range(_ROUNDS):
         population = fit_population(positions[in_control], estimates.covariances[in_control])
-        typical = population.spread + np.median(estimates.covariances, axis=0)
-        limit = largest_component((typical + typical.T) / 2, RUN_LENGTH)
+        limit = largest_component(population.spread + _typical(estimates.covariances), RUN_LENGTH)
+        # A vehicle that deviates widens the spread that it is judged by: the suspicious ones are left out to begin with.
+        limit = limit if number else min(limit, _SUSPICIOUS)
         scores = score_vehicles(
             estimates.positions, estimates.covariances, population.spread, limit, rig_limit, WEIGHT
         )
         found = {*scores.shifts, *np.flatnonzero(scores.deviating).tolist()}
         in_control = ~scores.deviating if (~scores.deviating).sum() >= FEWEST else in_control
         positions = _without_shifts(estimates, scores, population, in_control)
-        if found == alarms:
+        if found == alarms and number > 1:
             break
         alarms = found
     charted = np.isfinite(scores.values[:, 0])
@@ -168,8 +176,15 @@ def chart_vehicles(estimates: FleetEstimates) -> tuple[ControlChart, Population]
         run_length=RUN_LENGTH,
         vehicle_alarms=tuple(_vehicle_alarms(estimates, scores, limit)),
         rig_alarms=tuple(_rig_alarms(estimates, scores)),
+        offsets=positions - estimates.positions,
     )
     return chart, fit_population(positions[in_control], estimates.covariances[in_control])
+
+
+def _typical(covariances: Real) -> Real:
+    """Return the covariance matrix of the vehicle in the middle of all, by the volume of its ellipsoid."""
+    volumes = np.linalg.slogdet(covariances)[1]
+    return np.asarray(covariances[np.argsort(volumes)[len(volumes) // 2]])
 
 
 def _without_shifts(
