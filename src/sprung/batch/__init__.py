@@ -7,7 +7,7 @@ from sprung.batch.local_workers import LocalWorkers
 from sprung.batch.locking import folder_lock
 from sprung.batch.run import BatchSummary, run_batch
 from sprung.batch.shards import ShardFolder, read_rows, write_table
-from sprung.batch.task import Columns, Failure, Kind, Row, Task, Work, content_key
+from sprung.batch.task import Columns, Failure, Kind, Row, Task, Work, canonical_text, content_key
 
 __all__ = [
     "BatchCounts",
@@ -23,6 +23,7 @@ __all__ = [
     "ShardFolder",
     "Task",
     "Work",
+    "canonical_text",
     "choose_executor",
     "content_key",
     "describe_counts",

@@ -62,9 +62,7 @@ class BatchStep(Step):
 
 def step_of(counts: BatchCounts) -> BatchStep:
     """Return the step of some counts."""
-    total = counts.done + counts.failed + counts.left
-    part = (counts.done + counts.failed) / total if total else None
-    step = BatchStep("identifying the campaigns", detail=describe_counts(counts), done=part)
+    step = BatchStep("identifying the campaigns", detail=describe_counts(counts))
     object.__setattr__(step, "counts", counts)
     return step
 

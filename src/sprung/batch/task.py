@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import hashlib
+import json
 import time
 import traceback
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping, Sequence, Set
+from dataclasses import dataclass, fields, is_dataclass
 from typing import Any, Literal, TypeAlias
 
 from sprung.display import shown
@@ -114,3 +115,41 @@ def attempt(work: Work, argument: Any) -> Row | Failure:
         place = traceback.extract_tb(error.__traceback__)[-1]
         text = " ".join(str(error).split())
         return Failure("defect", f"{type(error).__name__}: {text} ({place.name}, line {place.lineno})")
+
+
+def canonical_text(value: Any) -> str:
+    """Return a text that is the same for equal values, in every process and on every machine, for a key.
+
+    Parameters
+    ----------
+    value
+        Text, numbers, None, sequences, mappings and dataclasses of them.
+
+    Returns
+    -------
+    str
+        JSON.
+
+    Examples
+    --------
+    >>> canonical_text({"b": (1, 2.5), "a": None})
+    '{"a": null, "b": [1, 2.5]}'
+    """
+    return json.dumps(_plain(value), sort_keys=True, allow_nan=True)
+
+
+def _plain(value: Any) -> Any:
+    if is_dataclass(value) and not isinstance(value, type):
+        own = {field.name: _plain(getattr(value, field.name)) for field in fields(value)}
+        return {"type": type(value).__name__, **own}
+    if isinstance(value, Mapping):
+        return {str(name): _plain(item) for name, item in value.items()}
+    if isinstance(value, Set):
+        return sorted(map(canonical_text, value))
+    if isinstance(value, str | int | float | None):
+        return value
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    if isinstance(value, Sequence):
+        return [_plain(item) for item in value]
+    return str(value)

@@ -6,6 +6,7 @@ import os
 import sys
 import traceback
 
+from sprung.cli import batches as batches
 from sprung.cli import identification as identification
 from sprung.cli import recordings as recordings
 from sprung.cli import studies as studies
