@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import queue
+import time
+from contextlib import suppress
 from importlib.metadata import version
 from importlib.util import find_spec
 from typing import Any, NoReturn
@@ -14,6 +17,9 @@ CONNECTION_TIMEOUT = 10.0
 
 _AHEAD = 2
 """Tasks for each thread of the cluster at a time."""
+
+_OFTEN = 2.0
+"""Time after which the size of the cluster is asked for again, s."""
 
 _KEPT = "What was finished is kept: start the command again when the cluster runs."
 
@@ -44,7 +50,10 @@ class DaskWorkers:
 
         self._dask: Any = distributed
         self._work, self._address = work, address
-        self._tasks: dict[Any, Task] = {}
+        self._tasks: dict[str, Task] = {}
+        self._futures: dict[str, Any] = {}
+        self._finished: queue.SimpleQueue[Any] = queue.SimpleQueue()
+        self._asked, self._threads = -_OFTEN, 0
         try:
             self._client: Any = distributed.Client(address, timeout=timeout, set_as_default=False)
         except (OSError, TimeoutError, ValueError) as error:
@@ -74,8 +83,13 @@ class DaskWorkers:
     @property
     def capacity(self) -> int:
         """Number of tasks that it takes at a time; it grows with the cluster."""
-        threads = sum(self._client.nthreads().values()) if self._client.status == "running" else 1
-        return _AHEAD * max(int(threads), 1)
+        if time.monotonic() - self._asked > _OFTEN:
+            try:
+                self._threads = sum(self._client.nthreads().values())
+            except OSError as error:
+                self._lost(error)
+            self._asked = time.monotonic()
+        return _AHEAD * max(int(self._threads), 1)
 
     def submit(self, task: Task) -> None:
         """Hand over a task.
@@ -86,8 +100,12 @@ class DaskWorkers:
             Its outcome comes from `collect`.
         """
         key = f"sprung-{content_key([task.campaign, task.key])}"  # two copies of a campaign are two tasks
-        future = self._client.submit(attempt, self._work, task.argument, key=key, pure=False)
-        self._tasks[future] = task
+        try:
+            future = self._client.submit(attempt, self._work, task.argument, key=key, pure=False)
+        except OSError as error:
+            self._lost(error)
+        self._tasks[key], self._futures[key] = task, future
+        future.add_done_callback(self._finished.put)
 
     def collect(self, timeout: float) -> list[tuple[Task, Row | Failure]]:
         """Return what is finished.
@@ -107,24 +125,23 @@ class DaskWorkers:
         InputError
             If the connection to the scheduler is lost.
         """
-        try:
-            finished = self._dask.wait(list(self._tasks), timeout, return_when="FIRST_COMPLETED").done
-        except TimeoutError:
-            finished = set()
-        except self._dask.CancelledError as error:
-            self._lost(error)
-        if self._client.status != "running" or any(future.cancelled() for future in finished):
+        found: list[tuple[Task, Row | Failure]] = []
+        with suppress(queue.Empty):
+            future = self._finished.get(timeout=timeout)
+            while True:
+                if future.key in self._tasks:
+                    found.append((self._tasks.pop(future.key), self._outcome(self._futures.pop(future.key))))
+                future = self._finished.get_nowait()
+        if not found and self._client.status != "running":
             self._lost()
-        return [(self._tasks.pop(future), self._outcome(future)) for future in finished]
+        return found
 
     def _outcome(self, future: Any) -> Row | Failure:
         try:
             outcome: Row | Failure = future.result(timeout=CONNECTION_TIMEOUT)
         except self._dask.KilledWorker as error:
             return Failure("worker", f"ended its worker process repeatedly ({_text(error)})")
-        except self._dask.CancelledError as error:
-            self._lost(error)
-        except TimeoutError as error:
+        except (self._dask.CancelledError, TimeoutError) as error:
             self._lost(error)
         except Exception as error:  # noqa: BLE001 (a failure is a row; the other campaigns are done)
             return Failure("worker", f"{type(error).__name__}: {_text(error)}")
@@ -133,6 +150,7 @@ class DaskWorkers:
     def close(self) -> None:
         """Close the connection; the cluster goes on."""
         self._tasks.clear()
+        self._futures.clear()
         self._client.close(timeout=CONNECTION_TIMEOUT)
 
     def _lost(self, error: Exception | None = None) -> NoReturn:

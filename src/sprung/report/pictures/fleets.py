@@ -43,22 +43,21 @@ def _spread(one: FleetType) -> Picture:
     """Draw the spread between vehicles beside the errors of their tests."""
     parameters = one.parameters
     places = {name: float(len(parameters) - i) for i, name in enumerate(parameters)}
-    marks: list[Mark] = []
-    for name, spread in parameters.items():
-        ends = np.maximum(spread.spread + NORMAL_95 * spread.spread_std * np.array([-1, 1]), 1e-9)
-        marks.append(Curve(ends, np.full(2, places[name]), "simulated", width=1.6))
     y = np.array(list(places.values()))
     own = np.array([np.nan if one.error is None else one.error for one in parameters.values()])
     joint = np.array([one.hierarchical_error for one in parameters.values()])
     between = np.array([one.spread for one in parameters.values()])
+    seen = np.concatenate([between, own[np.isfinite(own)], joint])
+    seen = seen[seen > 0]
+    low, high = float(seen.min()) / 1.5, float(seen.max()) * 2
+    half = NORMAL_95 * np.array([one.spread_std for one in parameters.values()])
+    ends = np.clip([between - half, between + half], low, high)
+    marks: list[Mark] = [Curve(end, np.full(2, place), "simulated", width=1.6) for end, place in zip(ends.T, y, strict=True)]
     marks += [
         Points(between, y, "simulated", "spread between vehicles"),
         Points(own, y, "first", "error of a vehicle, own test"),
         Points(joint, y, "second", "with the others", hollow=True),
     ]
-    seen = np.concatenate([between, own[np.isfinite(own)], joint])
-    seen = seen[seen > 0]
-    low, high = float(seen.min()) / 1.5, float(seen.max()) * 2
     axis = Axis("", 0.3, len(places) + 0.7, ticks=tuple((place, name) for name, place in places.items()))
     panel = Panel(axis, tuple(marks), height=0.17 * max(len(places), 2))
     x = Axis("standard deviation, percent of the mean", low, high, log=True)
