@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -158,12 +160,11 @@ def chart_vehicles(estimates: FleetEstimates) -> tuple[ControlChart, Population]
         limit = largest_component(population.spread + _typical(estimates.covariances), RUN_LENGTH)
         # A vehicle that deviates widens the spread that it is judged by: the suspicious ones are left out to begin with.
         limit = limit if number else min(limit, _SUSPICIOUS)
-        scores = score_vehicles(
-            estimates.positions, estimates.covariances, population.spread, limit, rig_limit, WEIGHT
-        )
+        scores = score_vehicles(estimates.positions, estimates.covariances, population, limit, rig_limit, WEIGHT)
         found = {*scores.shifts, *np.flatnonzero(scores.deviating).tolist()}
         in_control = ~scores.deviating if (~scores.deviating).sum() >= FEWEST else in_control
-        positions = _without_shifts(estimates, scores, population, in_control)
+        means = _period_means(estimates, scores, population, in_control)
+        positions = _without_shifts(estimates, scores, means)
         if found == alarms and number > 1:
             break
         alarms = found
@@ -175,7 +176,7 @@ def chart_vehicles(estimates: FleetEstimates) -> tuple[ControlChart, Population]
         rig_limit=rig_limit,
         run_length=RUN_LENGTH,
         vehicle_alarms=tuple(_vehicle_alarms(estimates, scores, limit)),
-        rig_alarms=tuple(_rig_alarms(estimates, scores)),
+        rig_alarms=tuple(_rig_alarms(estimates, scores, means)),
         offsets=positions - estimates.positions,
     )
     return chart, fit_population(positions[in_control], estimates.covariances[in_control])
@@ -187,20 +188,33 @@ def _typical(covariances: Real) -> Real:
     return np.asarray(covariances[np.argsort(volumes)[len(volumes) // 2]])
 
 
-def _without_shifts(
+class _PeriodMean(NamedTuple):
+    """Mean of the vehicles in control between two shifts of the rig, and its covariance."""
+
+    mean: Real
+    covariance: Real
+
+
+def _period_means(
     estimates: FleetEstimates, scores: Scores, population: Population, in_control: NDArray[np.bool_]
-) -> Real:
-    """Return the coordinates with the mean of every period moved to that of the last one."""
+) -> list[_PeriodMean]:
     weights = np.linalg.inv(estimates.covariances + population.spread)
     means = []
     for period in scores.periods:
         own = np.arange(estimates.count)[period]
         own = own[in_control[own]] if in_control[own].any() else own
-        sums = np.einsum("nij,nj->i", weights[own], estimates.positions[own])
-        means.append(np.linalg.solve(weights[own].sum(axis=0), sums))
+        covariance = np.linalg.inv(weights[own].sum(axis=0))
+        means.append(
+            _PeriodMean(covariance @ np.einsum("nij,nj->i", weights[own], estimates.positions[own]), covariance)
+        )
+    return means
+
+
+def _without_shifts(estimates: FleetEstimates, scores: Scores, means: Sequence[_PeriodMean]) -> Real:
+    """Return the coordinates with the mean of every period moved to that of the last one."""
     moved = estimates.positions.copy()
-    for period, mean in zip(scores.periods, means, strict=True):
-        moved[period] += means[-1] - mean
+    for period, own in zip(scores.periods, means, strict=True):
+        moved[period] += means[-1].mean - own.mean
     return moved
 
 
@@ -237,16 +251,16 @@ def _deviation(name: str, shift: float, std: float, positive: bool) -> Deviation
     return Deviation(name, percent, 100 * float(std) * (1 + percent / 100 if positive else 1), float(shift / std))
 
 
-def _rig_alarms(estimates: FleetEstimates, scores: Scores) -> Iterator[RigAlarm]:
-    for alarm, since in scores.shifts:
-        own = slice(since, alarm + 1)
-        mean = scores.values[own].mean(axis=0)
-        names, directions, positive = _hypotheses(estimates, scores.directions[own].mean(axis=0))
-        best = int(np.abs(hypothesis_scores(mean, directions)).argmax())
+def _rig_alarms(estimates: FleetEstimates, scores: Scores, means: Sequence[_PeriodMean]) -> Iterator[RigAlarm]:
+    """Yield the shifts of the rig; each is explained by the difference between the vehicles since then and those before."""
+    for (alarm, since), (before, after) in zip(scores.shifts, pairwise(means), strict=True):
+        whiten = np.linalg.inv(np.linalg.cholesky(before.covariance + after.covariance))
+        difference = whiten @ (after.mean - before.mean)
+        names, directions, positive = _hypotheses(estimates, whiten)
+        best = int(np.abs(hypothesis_scores(difference, directions)).argmax())
         direction = directions[:, best]
-        shift = float(direction @ mean / (direction @ direction))
-        std = float(1 / np.sqrt((alarm + 1 - since) * (direction @ direction)))
-        found = _deviation(names[best], shift, std, positive[best])
+        shift = float(direction @ difference / (direction @ direction))
+        found = _deviation(names[best], shift, float(1 / np.linalg.norm(direction)), positive[best])
         yield RigAlarm(alarm + 1, estimates.labels[alarm], since + 1, estimates.labels[since], found)
 
 

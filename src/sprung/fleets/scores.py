@@ -12,11 +12,16 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.stats import norm, t
 
 from sprung.display import shown
+from sprung.fleets.population import Population
 from sprung.fleets.run_length import clipping_radius
 
 Real = NDArray[np.float64]
+
+_KNOWN = 1e3
+"""Ratio of the own error's variance to that of the spread above which the total counts as known."""
 
 
 @shown
@@ -30,7 +35,7 @@ class Scores:
         Independent and standard normal for vehicles in control, dimensionless, shape (vehicle, parameter); NaN for the first one.
     components
         Score of each single parameter: of the hypothesis that it alone deviates. Standard normal for vehicles in control,
-        dimensionless, shape (vehicle, parameter).
+        also where the spread is known from few vehicles; dimensionless, shape (vehicle, parameter).
     directions
         Change of a vehicle's score by each coordinate, dimensionless, shape (vehicle, component of the score, parameter).
     deviating
@@ -57,7 +62,7 @@ class Scores:
 
 
 def score_vehicles(
-    positions: Real, covariances: Real, spread: Real, vehicle_limit: float, rig_limit: float, weight: float
+    positions: Real, covariances: Real, population: Population, vehicle_limit: float, rig_limit: float, weight: float
 ) -> Scores:
     """Return the scores of vehicles, in the order of their tests.
 
@@ -65,8 +70,8 @@ def score_vehicles(
     ----------
     positions, covariances
         Estimates and their covariance matrices, dimensionless, shapes (vehicle, parameter) and (vehicle, parameter, parameter).
-    spread
-        Covariance between vehicles, dimensionless, shape (parameter, parameter).
+    population
+        Spread between vehicles, and how well it is known.
     vehicle_limit
         Largest score of a single parameter in control, dimensionless: see `largest_component`.
     rig_limit, weight
@@ -77,7 +82,8 @@ def score_vehicles(
     Scores
     """
     count, width = positions.shape
-    totals = covariances + spread
+    totals = covariances + population.spread
+    freedom = _freedom(covariances, population)
     weights = np.linalg.inv(totals)
     weighted = np.einsum("nij,nj->ni", weights, positions)
     values, components = np.full((count, width), np.nan), np.full((count, width), np.nan)
@@ -93,7 +99,7 @@ def score_vehicles(
             difference = positions[i] - mean_covariance @ weighted_sum
             directions[i] = np.linalg.inv(np.linalg.cholesky(totals[i] + mean_covariance))
             values[i] = directions[i] @ difference
-            components[i] = hypothesis_scores(values[i], directions[i])
+            components[i] = _normal(hypothesis_scores(values[i], directions[i]), freedom[i])
             deviating[i] = np.abs(components[i]).max() > vehicle_limit
             clipped[i] = values[i] * (radius / max(float(np.linalg.norm(values[i])), radius))
             average = (1 - weight) * average + weight * clipped[i]
@@ -107,6 +113,23 @@ def score_vehicles(
             information, weighted_sum = weights[own].sum(axis=0), weighted[own].sum(axis=0)
             average, charted_since, period = np.zeros(width), i + 1, since
     return Scores(values, components, directions, deviating, averages, tuple(shifts))
+
+
+def _freedom(covariances: Real, population: Population) -> Real:
+    """Return the degrees of freedom of each variance about the mean, shape (vehicle, parameter), by Welch and Satterthwaite.
+
+    The part of the vehicle's own error is known; that of the spread is as uncertain as its standard error says.
+    """
+    variances = np.diag(population.spread)
+    of_spread = 1 / (2 * population.std_error**2) - population.correlated * (len(variances) - 1)
+    ratio = np.diagonal(covariances, axis1=1, axis2=2) / np.maximum(variances, np.finfo(float).tiny)
+    return np.asarray(np.maximum(of_spread, 1) * (1 + np.minimum(ratio, _KNOWN)) ** 2)
+
+
+def _normal(values: Real, freedom: Real) -> Real:
+    """Transform Student's t to a standard normal variable."""
+    tails = norm.isf(np.maximum(t.sf(np.abs(values), freedom), np.finfo(float).tiny))
+    return np.asarray(np.sign(values) * np.maximum(tails, 0.0))
 
 
 def _change_point(values: Real) -> int:
