@@ -2,7 +2,15 @@
 
 from sprung.fleets.campaigns import FleetSource, campaign_key, find_campaigns
 from sprung.fleets.charts import RIG_FAULTS, ControlChart, Deviation, RigAlarm, VehicleAlarm, chart_vehicles
-from sprung.fleets.estimates import NEEDED, FleetEstimates, collect_estimates, label_vehicles
+from sprung.fleets.estimates import (
+    NEEDED,
+    WHEELBASE,
+    FleetEstimates,
+    Quantity,
+    collect_estimates,
+    label_vehicles,
+    quantity_of,
+)
 from sprung.fleets.fleet import CONTENT, HIERARCHICAL_COLUMNS, HIERARCHICAL_FOLDER, Fleet, fleet
 from sprung.fleets.population import FEWEST, Population, VehicleEstimates, estimate_vehicles, fit_population
 from sprung.fleets.rows import COLUMNS, QUANTITIES, VECTOR, identify_row, row_of
@@ -28,6 +36,7 @@ __all__ = [
     "RUN_LENGTH",
     "VECTOR",
     "WEIGHT",
+    "WHEELBASE",
     "ControlChart",
     "Deviation",
     "Fleet",
@@ -36,6 +45,7 @@ __all__ = [
     "FleetType",
     "ParameterSpread",
     "Population",
+    "Quantity",
     "RigAlarm",
     "Scores",
     "VehicleAlarm",
@@ -55,6 +65,7 @@ __all__ = [
     "in_test_order",
     "label_vehicles",
     "largest_component",
+    "quantity_of",
     "row_of",
     "score_vehicles",
     "survey_types",

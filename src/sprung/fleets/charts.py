@@ -11,11 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.display import shown
-from sprung.fleets.estimates import FleetEstimates
+from sprung.fleets.estimates import FleetEstimates, quantity_of
 from sprung.fleets.population import FEWEST, Population, fit_population
 from sprung.fleets.run_length import RUN_LENGTH, WEIGHT, alarm_limit
 from sprung.fleets.scores import Scores, hypothesis_scores, largest_component, score_vehicles
-from sprung.vehicle import PARAMETERS
 
 Real = NDArray[np.float64]
 
@@ -268,7 +267,7 @@ def _hypotheses(estimates: FleetEstimates, directions: Real) -> tuple[list[str],
     """Return what may have changed: single parameters and faults of the rig, with the change of the score by each."""
     names = list(estimates.names)
     exponents = np.array(
-        [[fault.get(PARAMETERS[name].unit, 0.0) for name in names] for fault in RIG_FAULTS.values()]
+        [[fault.get(quantity_of(name).unit, 0.0) for name in names] for fault in RIG_FAULTS.values()]
     ).T
     possible = np.flatnonzero(np.abs(exponents).sum(axis=0) > 1)
     everything = np.concatenate([directions, directions @ exponents[:, possible]], axis=1)

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sprung.batch import Row
 from sprung.display import shown
-from sprung.vehicle import PARAMETERS
+from sprung.vehicle import DERIVED, PARAMETERS
 
 Real = NDArray[np.float64]
 
@@ -28,6 +29,25 @@ NEEDED = ("campaign", "vehicle", "identification", "date", "verdict", "status", 
 """Columns of the rows from which they are made."""
 
 
+WHEELBASE = "wheelbase"
+"""Parameter of a fleet in place of b."""
+
+
+class Quantity(NamedTuple):
+    """Unit and kind of a parameter of a fleet.
+
+    Attributes
+    ----------
+    unit
+        SI.
+    positive
+        Whether its coordinate is the logarithm of the value.
+    """
+
+    unit: str
+    positive: bool
+
+
 @shown
 @dataclass(frozen=True, eq=False)
 class FleetEstimates:
@@ -38,7 +58,7 @@ class FleetEstimates:
     campaigns, labels
         Path of each campaign, and a name for people; shape (vehicle,).
     names
-        Parameters.
+        Parameters; the wheelbase in place of b.
     positive
         Whether the coordinate of a parameter is the logarithm of its value, shape (parameter,); that of the others is
         the value in units of its size.
@@ -148,6 +168,9 @@ def collect_estimates(rows: Iterable[Row]) -> FleetEstimates | None:
     positions = np.where(known, positions, middle) / sizes
     inside = known[:, :, None] & known[:, None, :]
     covariances = np.where(inside, covariances / np.outer(sizes, sizes), covariances)
+    if "a" in place and "b" in place:
+        names = tuple(WHEELBASE if name == "b" else name for name in names)
+        positions, covariances = _with_wheelbase(positions, covariances, place["a"], place["b"])
     covariances = (covariances + covariances.transpose(0, 2, 1)) / 2 + _FLOOR**2 * np.eye(width)
     return FleetEstimates(
         campaigns=tuple(row["campaign"] for row in usable),
@@ -159,6 +182,38 @@ def collect_estimates(rows: Iterable[Row]) -> FleetEstimates | None:
         covariances=covariances,
         known=known,
     )
+
+
+def _with_wheelbase(positions: Real, covariances: Real, front: int, rear: int) -> tuple[Real, Real]:
+    """Return coordinates with the wheelbase in place of b, its distance behind the centre of gravity.
+
+    The wheelbase is that of the type and mostly measured, while the centre of gravity differs between vehicles: a and b do so
+    together, a and the wheelbase independently of each other.
+    """
+    shares = np.exp(positions[:, [front, rear]])
+    wheelbases = shares.sum(axis=1)
+    moved = positions.copy()
+    moved[:, rear] = np.log(wheelbases)
+    jacobians = np.broadcast_to(np.eye(positions.shape[1]), covariances.shape).copy()
+    jacobians[:, rear, front], jacobians[:, rear, rear] = (shares / wheelbases[:, None]).T
+    return moved, jacobians @ covariances @ jacobians.transpose(0, 2, 1)
+
+
+def quantity_of(name: str) -> Quantity:
+    """Return unit and kind of a parameter of a fleet.
+
+    Parameters
+    ----------
+    name
+        A parameter of a vehicle, or its wheelbase.
+
+    Returns
+    -------
+    Quantity
+    """
+    if name == WHEELBASE:
+        return Quantity(DERIVED[name].unit, True)
+    return Quantity(PARAMETERS[name].unit, PARAMETERS[name].positive)
 
 
 def label_vehicles(rows: Sequence[Row]) -> tuple[str, ...]:

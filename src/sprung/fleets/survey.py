@@ -13,10 +13,9 @@ from numpy.typing import NDArray
 from sprung.batch import Row
 from sprung.display import shown
 from sprung.fleets.charts import ControlChart, chart_vehicles
-from sprung.fleets.estimates import FleetEstimates, collect_estimates
+from sprung.fleets.estimates import FleetEstimates, collect_estimates, quantity_of
 from sprung.fleets.population import FEWEST, Population, VehicleEstimates, estimate_vehicles
 from sprung.uncertainty import NORMAL_95
-from sprung.vehicle import PARAMETERS
 
 Real = NDArray[np.float64]
 
@@ -90,7 +89,7 @@ class FleetType:
         scale = 100 * np.where(own.positive, 1.0, 1 / np.maximum(np.abs(population.mean), 1e-300))
         return {
             name: ParameterSpread(
-                PARAMETERS[name].unit,
+                quantity_of(name).unit,
                 float(means[j]),
                 float(mean_uncertainties[j]),
                 float(scale[j] * population.std[j]),
@@ -127,7 +126,7 @@ class FleetType:
                         "campaign": campaign,
                         "label": label,
                         "parameter": name,
-                        "unit": PARAMETERS[name].unit,
+                        "unit": quantity_of(name).unit,
                         "single": float(values[i, j]) if is_determined else None,
                         "single_std": float(stds[i, j]) if is_determined else None,
                         "hierarchical": float(joint_values[i, j]),
