@@ -10,7 +10,7 @@ import os
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import tempfile
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -110,7 +110,11 @@ def compared(one: FleetType, fleet: Sequence[Member]) -> list[dict[str, Any]]:
     truth = np.log([[true[label][name] for name in own.names] for label in own.labels])
     cases = []
     for j, name in enumerate(own.names):
-        case: dict[str, Any] = {"parameter": name, "vehicles": own.count, "spread": figures(100 * one.population.std[j])}
+        case: dict[str, Any] = {
+            "parameter": name,
+            "vehicles": own.count,
+            "spread": figures(100 * one.population.std[j]),
+        }
         for key, positions, stds in (
             ("single", own.positions, np.sqrt(np.diagonal(own.covariances, axis1=1, axis2=2))),
             ("hierarchical", joint.positions, joint.stds),
@@ -124,12 +128,12 @@ def compared(one: FleetType, fleet: Sequence[Member]) -> list[dict[str, Any]]:
 
 
 def redrawn(own: FleetEstimates, population: Population, number: int, drift: bool, weak: bool) -> FleetEstimates:
-    """Return a fleet drawn from a population, with the errors of the real tests; drift and weak dampers as in the disturbed one."""
+    """Return a fleet drawn from a population, with the errors of the real tests, drift and weak dampers."""
     random = np.random.default_rng([number, drift, weak])
     count, width = own.positions.shape
     true = population.mean + random.standard_normal((count, width)) @ np.linalg.cholesky(population.spread).T
     if drift:
-        true[count // 2 :, [SCALED.index(name) for name in own.names if name in SCALED]] += np.log1p(DRIFT)
+        true[count // 2 :, [i for i, name in enumerate(own.names) if name in SCALED]] += np.log1p(DRIFT)
     if weak:
         true[count // 4 - 1, own.names.index("c_sf")] += np.log1p(-WEAK)
     factors = np.linalg.cholesky(own.covariances)
@@ -157,9 +161,7 @@ def alarms(own: FleetEstimates, population: Population, number: int, drift: bool
     }
 
 
-def charted(
-    one: FleetType, fleets: int, processes: int, drift: bool, weak: bool, what: str
-) -> dict[str, Any]:
+def charted(one: FleetType, fleets: int, processes: int, drift: bool, weak: bool, what: str) -> dict[str, Any]:
     """Return how often the charts of fleets that are drawn anew raise which alarms."""
     tasks = [(one.estimates, one.population, number, drift, weak) for number in range(fleets)]
     found = list(run(alarms, tasks, processes, 1))
@@ -183,7 +185,9 @@ def charted(
 def main() -> None:
     """Run the study."""
     parser = arguments("A fleet: estimates with those of the other vehicles, and control charts.", campaigns=300)
-    parser.add_argument("--fleets", type=int, default=100, help="how many fleets for each row of alarms (default %(default)s)")
+    parser.add_argument(
+        "--fleets", type=int, default=100, help="how many fleets for each row of alarms (default %(default)s)"
+    )
     options = parser.parse_args()
     fleet = members(options.campaigns)
     with tempfile.TemporaryDirectory() as temporary:
@@ -222,9 +226,7 @@ def real_case(what: str, found: sprung.fleets.Fleet) -> dict[str, Any]:
         "failed": found.counts.failed,
         "computed": found.computed,
         "verdicts": dict(found.verdicts),
-        "rig": [
-            {"since": one.since, "detected": one.number, **deviation(one.deviation)} for one in chart.rig_alarms
-        ],
+        "rig": [{"since": one.since, "detected": one.number, **deviation(one.deviation)} for one in chart.rig_alarms],
         "vehicle": [
             {"number": one.number, "deviations": [deviation(each) for each in one.deviations]}
             for one in chart.vehicle_alarms
@@ -237,7 +239,9 @@ def deviation(one: Any) -> dict[str, Any]:
     return {"name": one.name, "percent": figures(one.percent), "percent_std": figures(one.percent_std)}
 
 
-def page(errors: Sequence[Mapping[str, Any]], real: Sequence[Mapping[str, Any]], cases: Sequence[Mapping[str, Any]]) -> str:
+def page(
+    errors: Sequence[Mapping[str, Any]], real: Sequence[Mapping[str, Any]], cases: Sequence[Mapping[str, Any]]
+) -> str:
     """Write the page."""
     count, fleets = errors[0]["vehicles"], cases[0]["count"]
     ratio = np.median([one["single_rmse"] / one["hierarchical_rmse"] for one in errors])
@@ -257,7 +261,15 @@ def page(errors: Sequence[Mapping[str, Any]], real: Sequence[Mapping[str, Any]],
     head = [
         "parameter", "spread", "own test: error", "stated", "covered", "with the others: error", "stated", "covered"
     ]  # fmt: skip
-    chart_head = ["fleets", "rig alarms", "vehicle alarms", "drift named", "median delay", "mean size, %", "weak dampers named"]
+    chart_head = [
+        "fleets",
+        "rig alarms",
+        "vehicle alarms",
+        "drift named",
+        "median delay",
+        "mean size, %",
+        "weak dampers named",
+    ]
     chart_rows = [
         [
             one["fleets"],
@@ -272,22 +284,26 @@ def page(errors: Sequence[Mapping[str, Any]], real: Sequence[Mapping[str, Any]],
     ]
     return f"""# What a fleet tells
 
-Vehicles of one type are tested one after the other, each with two drops only. Does the fleet make the estimates of each vehicle better
-([hierarchical fit](../fleets.md)), and do its {{term}}`control charts <control chart>` tell a rig that drifts from a vehicle that
-deviates?
+Vehicles of one type are tested one after the other, each with two drops only. Does the fleet make the estimates of
+each vehicle better
+([hierarchical fit](../fleets.md)), and do its {{term}}`control charts <control chart>` tell a rig that drifts from a
+vehicle that deviates?
 
 ## Method
 
-{count} vehicles that differ as the column *spread* says, relative to the Table 1 car with one wheelbase. Each drops from its front
+{count} vehicles that differ as the column *spread* says, relative to the Table 1 car with one wheelbase. Each drops
+from its front
 wheels and from its left wheels, recorded by eight accelerometers for {DURATION:g} s at {RATE:g} Hz with noise of {NOISE:g} m/s²
-root-mean-square, and is weighed to {100 * WEIGHING:g} %. `sprung.fleet` reads and identifies the campaigns, and compares the estimates.
+root-mean-square, and is weighed to {100 * WEIGHING:g} %. `sprung.fleet` reads and identifies the campaigns, and
+compares the estimates.
 
 Then the fleet is disturbed, and identified again into the same folder: from its middle on the scales of the rig read
-{100 * DRIFT:g} % too much, and one vehicle at a quarter has front dampers that are {100 * WEAK:g} % weak. {real[1]["computed"]} of
+{100 * DRIFT:g} % too much, and one vehicle at a quarter has front dampers that are {100 * WEAK:g} % weak.
+{real[1]["computed"]} of
 {count} campaigns have changed, and only these were identified again.
 
-For the rate of false alarms, {fleets} fleets were drawn for each row of the last table: vehicles from the estimated population, with errors
-of the covariance matrices of the real tests.
+For the rate of false alarms, {fleets} fleets were drawn for each row of the last table: vehicles from the estimated
+population, with errors of the covariance matrices of the real tests.
 
 ## Errors
 
@@ -296,7 +312,8 @@ intervals that contain the truth.
 
 {table(head, rows)}
 
-The error of an estimate with the others is smaller by a factor of {ratio:.1f} (median of the parameters). Nearly all errors of such a
+The error of an estimate with the others is smaller by a factor of {ratio:.1f} (median of the parameters). Nearly all
+errors of such a
 test are common to several parameters: the position of the centre of gravity, which two drops hardly determine. Vehicles of one
 type have nearly the same.
 
@@ -306,8 +323,10 @@ type have nearly the same.
 
 ## Alarms of fleets that were drawn
 
-Promised is one false alarm of each chart in {RUN_LENGTH:.0f} vehicles: {cases[0]["expected_false"]:g} in {fleets} fleets of {count} vehicles,
-with a standard deviation of {np.sqrt(cases[0]["expected_false"]):.1f}. Named: the number of fleets in which the drift is explained as one of
+Promised is one false alarm of each chart in {RUN_LENGTH:.0f} vehicles: {cases[0]["expected_false"]:g} in {fleets}
+fleets of {count} vehicles,
+with a standard deviation of {np.sqrt(cases[0]["expected_false"]):.1f}. Named: the number of fleets in which the
+drift is explained as one of
 the scale, and in which the weak dampers are found as such. Delay: vehicles from the beginning of the drift to the alarm.
 
 {table(chart_head, chart_rows)}
@@ -323,15 +342,19 @@ def _text(value: float | None, form: str) -> str:
 
 
 def _sentences(real: Sequence[Mapping[str, Any]]) -> Iterator[str]:
-    size: Callable[[Mapping[str, Any]], str] = (
-        lambda one: f"{one['name']} {one['percent']:+.2f} ± {one['percent_std']:.2f} %"
-    )
     for case in real:
-        found = [f"rig: {size(one)} since vehicle {one['since']}, detected at {one['detected']}" for one in case["rig"]]
+        found = [
+            f"rig: {_size(one)} since vehicle {one['since']}, detected at {one['detected']}" for one in case["rig"]
+        ]
         found += [
-            f"vehicle {one['number']}: {', '.join(size(each) for each in one['deviations'])}" for one in case["vehicle"]
+            f"vehicle {one['number']}: {', '.join(_size(each) for each in one['deviations'])}"
+            for one in case["vehicle"]
         ]
         yield f"- {case['fleet']}: {'; '.join(found) or 'no alarm'}."
+
+
+def _size(one: Mapping[str, Any]) -> str:
+    return f"{one['name']} {one['percent']:+.2f} ± {one['percent_std']:.2f} %"
 
 
 if __name__ == "__main__":

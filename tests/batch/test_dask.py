@@ -12,9 +12,9 @@ from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from pathlib import Path
 
-import batch_work
 import pytest
 
+import batch_work
 from sprung.batch import BatchStep, DaskWorkers, Task, content_key, folder_lock, read_rows, run_batch
 from sprung.errors import InputError
 from sprung.progress import Step
@@ -63,7 +63,9 @@ def start(tmp_path: Path) -> Iterator[Callable[[int], Cluster]]:
             port = free_port()
             address = f"tcp://127.0.0.1:{port}"
             processes = [run("scheduler", "--host", "127.0.0.1", "--port", str(port), "--no-dashboard")]
-            processes += [run("worker", address, "--nthreads", "1", "--no-nanny", "--no-dashboard") for _ in range(workers)]
+            processes += [
+                run("worker", address, "--nthreads", "1", "--no-nanny", "--no-dashboard") for _ in range(workers)
+            ]
             return address, processes
 
         yield cluster

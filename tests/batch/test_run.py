@@ -13,9 +13,9 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-import batch_work
 import pytest
 
+import batch_work
 from sprung.batch import (
     BatchStep,
     BatchSummary,
@@ -73,7 +73,9 @@ def test_what_is_done_is_not_done_again_and_what_changed_is(tmp_path: Path) -> N
     again = do(tmp_path, batch_work.square, tasks(600), 600)
     assert (again.computed, again.counts.done) == (0, 600)
     # Ten campaigns have another content, one is new, and ten are not given any more.
-    changed = [Task(task.campaign, "other", task.argument + 1000) for task in tasks(600) if 495 <= int(task.campaign) < 505]
+    changed = [
+        Task(task.campaign, "other", task.argument + 1000) for task in tasks(600) if 495 <= int(task.campaign) < 505
+    ]
     kept = [task for task in tasks(601) if not 485 <= int(task.campaign) < 505]
     third = do(tmp_path, batch_work.square, iter([*changed, *kept]), 591)
     assert third.computed == 11
@@ -130,7 +132,10 @@ def test_workers_that_cannot_start_end_the_batch(tmp_path: Path, monkeypatch: py
 
 
 def test_two_drivers_are_told_apart(tmp_path: Path) -> None:
-    with folder_lock(tmp_path), pytest.raises(InputError, match=f"another run that writes here .process {os.getpid()} "):
+    with (
+        folder_lock(tmp_path),
+        pytest.raises(InputError, match=f"another run that writes here .process {os.getpid()} "),
+    ):
         do(tmp_path, batch_work.square, tasks(5), 5)
     do(tmp_path, batch_work.square, tasks(5), 5)
 
@@ -183,7 +188,8 @@ def test_a_full_disk_is_said_and_loses_nothing(tmp_path: Path) -> None:
         tasks = [Task(str(i), content_key(["", str(i)]), i) for i in range(480)]
         try:
             with folder_lock({str(tmp_path)!r}):
-                run_batch(tasks, LocalWorkers(batch_work.square, 1), {str(tmp_path)!r}, batch_work.COLUMNS, "squares", total=480)
+                workers = LocalWorkers(batch_work.square, 1)
+                run_batch(tasks, workers, {str(tmp_path)!r}, batch_work.COLUMNS, "squares", total=480)
         except InputError as error:
             print(error)
     """
@@ -191,11 +197,14 @@ def test_a_full_disk_is_said_and_loses_nothing(tmp_path: Path) -> None:
     done = subprocess.run(  # noqa: S603 (our own)
         [sys.executable, "-c", textwrap.dedent(code)], capture_output=True, text=True, check=False, env=environment
     )
-    assert "found no space for more rows; expected a place to write to. Make room, and start the command again" in done.stdout
+    assert (
+        "found no space for more rows; expected a place to write to. Make room, and start the command again"
+        in done.stdout
+    )
     assert rows(tmp_path).items() >= before.items()
     assert [path.name for path in tmp_path.iterdir() if path.name.endswith(".new")] == []
     left = 480 - len(rows(tmp_path))
-    assert 0 < left
+    assert left > 0
     assert do(tmp_path, batch_work.square, tasks(480), 480).computed == left
 
 

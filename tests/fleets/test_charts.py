@@ -72,7 +72,7 @@ def test_scores_of_vehicles_in_control_are_independent_and_normal() -> None:
     # 60 fleets of 143 numbers: standard errors 0.011 of the mean, 0.015 of the variance, 1.5 times 1/sqrt(60) of a correlation.
     assert abs(flat.mean()) < 0.04
     assert flat.var() == pytest.approx(1, abs=0.06)
-    correlation = np.corrcoef(flat.T)
+    correlation = np.asarray(np.corrcoef(flat.T))
     np.fill_diagonal(correlation, 0)
     assert np.sqrt(np.mean(correlation**2)) == pytest.approx(1 / np.sqrt(59), rel=0.05)
 

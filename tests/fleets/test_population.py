@@ -41,17 +41,19 @@ def log_risk_ratios() -> tuple[Real, Real]:
 
 
 def restricted_likelihood(spread: Real, positions: Real, covariances: Real) -> float:
-    weights = np.linalg.inv(covariances + spread)
-    covariance = np.linalg.inv(weights.sum(axis=0))
+    weights = np.asarray(np.linalg.inv(covariances + spread), dtype=float)
+    covariance = np.asarray(np.linalg.inv(weights.sum(axis=0)), dtype=float)
     rest = positions - covariance @ np.einsum("nij,nj->i", weights, positions)
-    return _loglikelihood(weights, covariance, np.einsum("nij,nj->ni", weights, rest), rest)
+    return _loglikelihood(weights, covariance, np.asarray(np.einsum("nij,nj->ni", weights, rest), dtype=float), rest)
 
 
 def test_the_restricted_likelihood_is_that_of_other_programs() -> None:
     """R's metafor states for these trials: τ² = 0.3132, mean -0.7145 with a standard error of 0.1798 (method REML)."""
     positions, covariances = log_risk_ratios()
     found = minimize_scalar(
-        lambda t: -restricted_likelihood(np.array([[t]]), positions, covariances), bounds=(0, 2), options={"xatol": 1e-7}
+        lambda t: -restricted_likelihood(np.array([[t]]), positions, covariances),
+        bounds=(0, 2),
+        options={"xatol": 1e-7},
     )
     assert found.x == pytest.approx(0.3132, abs=5e-5)
     weights = 1 / (covariances[:, 0, 0] + found.x)
@@ -68,7 +70,9 @@ def test_the_spread_maximises_restricted_likelihood_and_prior() -> None:
     ).x
     population = fit_population(positions, covariances)
     assert population.spread[0, 0] == pytest.approx(best, rel=0.02)  # the iteration ends at a gain of 1e-4
-    assert population.std_error[0] == pytest.approx(0.1664 / 0.3132 / 2, rel=0.2)  # metafor: 0.1664 for τ², without prior
+    assert population.std_error[0] == pytest.approx(
+        0.1664 / 0.3132 / 2, rel=0.2
+    )  # metafor: 0.1664 for τ², without prior
 
 
 def test_without_errors_of_the_tests_the_spread_is_that_of_the_sample() -> None:
@@ -86,7 +90,9 @@ def test_an_estimate_is_pulled_to_the_mean_by_the_ratio_of_variances() -> None:
     population = fit_population(positions, variances[:, None, None])
     found = estimate_vehicles(positions, variances[:, None, None], population)
     ratio = population.spread[0, 0] / (population.spread[0, 0] + variances)
-    np.testing.assert_allclose(found.positions[:, 0], population.mean[0] + ratio * (positions[:, 0] - population.mean[0]))
+    np.testing.assert_allclose(
+        found.positions[:, 0], population.mean[0] + ratio * (positions[:, 0] - population.mean[0])
+    )
     np.testing.assert_allclose(found.positions[::2], positions[::2], atol=1e-8)
 
 
@@ -124,7 +130,9 @@ def test_coverage_of_the_estimates(count: int, fleets: int) -> None:
     width, covered = 15, []
     for _ in range(fleets):
         std = random.uniform(0.01, 0.08, width)
-        true = random.multivariate_normal(np.zeros(width), random_correlation(random, width, 0.5) * np.outer(std, std), count)
+        true = random.multivariate_normal(
+            np.zeros(width), random_correlation(random, width, 0.5) * np.outer(std, std), count
+        )
         own = random.uniform(0.005, 0.1, (count, width))
         covariances = np.array([random_correlation(random, width) * np.outer(s, s) + 1e-8 * np.eye(width) for s in own])
         positions = np.array([random.multivariate_normal(t, c) for t, c in zip(true, covariances, strict=True)])

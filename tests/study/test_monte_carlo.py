@@ -79,7 +79,7 @@ def test_more_campaigns_go_on(study: Study) -> None:
 
 def test_another_study_in_the_folder_is_refused(study: Study) -> None:
     folder, _ = study
-    with pytest.raises(InputError, match="found rows of a Monte Carlo study .*; expected rows of a Monte Carlo study"):
+    with pytest.raises(InputError, match=r"found rows of a Monte Carlo study .*; expected rows of a Monte Carlo study"):
         sprung.study.monte_carlo(TABLE_1_CAR, {**TEST, "noise": 0.05}, 8, 1, output=folder)
 
 
@@ -101,7 +101,10 @@ def test_the_interval_of_a_share_is_wilsons(count: int, of: int) -> None:
 
 
 def test_a_rejected_campaign_has_no_estimates() -> None:
-    rows = [{"verdict": "reject", "k_sf": None, "k_sf_std": None}, {"verdict": "doubtful", "k_sf": None, "k_sf_std": None}]
+    rows = [
+        {"verdict": "reject", "k_sf": None, "k_sf_std": None},
+        {"verdict": "doubtful", "k_sf": None, "k_sf_std": None},
+    ]
     one = accuracy_of("k_sf", 17000.0, rows)
     assert (one.estimated, one.undetermined, one.bias, one.coverage.of) == (0, 1, None, 0)
 

@@ -55,10 +55,16 @@ class DaskWorkers:
         self._finished: queue.SimpleQueue[Any] = queue.SimpleQueue()
         self._asked, self._threads = -_OFTEN, 0
         try:
-            self._client: Any = distributed.Client(address, timeout=timeout, set_as_default=False)
+            self._client: Any = self._dask.Client(address, timeout=timeout, set_as_default=False)
         except (OSError, TimeoutError, ValueError) as error:
             do = "Check the address and that `dask scheduler` runs there; a firewall may stand between."
-            _refuse(address, f"no answer within {timeout:g} s ({_text(error)})", "the scheduler of a Dask cluster", do, error)
+            _refuse(
+                address,
+                f"no answer within {timeout:g} s ({_text(error)})",
+                "the scheduler of a Dask cluster",
+                do,
+                error,
+            )
         try:
             self._check_workers(timeout)
         except BaseException:
@@ -76,9 +82,9 @@ class DaskWorkers:
         others = {address: text for address, text in found.items() if text != own}
         if others:
             first, what = next(iter(others.items()))
-            told = f"sprung {what}" if isinstance(what, str) else f"no usable sprung ({_text(what)})"
+            what_runs = f"sprung {what}" if isinstance(what, str) else f"no usable sprung ({_text(what)})"
             do = "Install the same version on every machine of the cluster."
-            _refuse(f"{self._address}: worker {first}", told, f"sprung {own}, as here", do)
+            _refuse(f"{self._address}: worker {first}", what_runs, f"sprung {own}, as here", do)
 
     @property
     def capacity(self) -> int:

@@ -9,7 +9,6 @@ from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 
-
 from sprung.batch.counts import BatchCounts, Counter
 from sprung.batch.executor import Executor
 from sprung.batch.shards import ShardFolder
@@ -48,8 +47,6 @@ class BatchSummary:
     counts: BatchCounts
     computed: int
     gone: tuple[str, ...]
-
-
 
 
 def run_batch(
@@ -92,8 +89,8 @@ def run_batch(
     Raises
     ------
     InputError
-        If rows cannot be written or the folder has other Parquet files, a campaign occurs twice, or a cluster is lost. Rows that
-        were finished before are written.
+        If rows cannot be written or the folder has other Parquet files, a campaign occurs twice, or a cluster is
+        lost. Rows that were finished before are written.
     """
     with closing(executor):
         shards = ShardFolder(folder, columns, content)

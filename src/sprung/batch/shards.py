@@ -21,7 +21,7 @@ from sprung.batch.task import Columns, Kind, Row
 from sprung.errors import InputError, Problem, Problems
 
 if TYPE_CHECKING:
-    import pyarrow as pa
+    import pyarrow as pa  # type: ignore[import-untyped]
 
 ROWS_PER_SHARD = 500
 """Number of rows of a full file: so many are written again with every change of it."""
@@ -123,7 +123,7 @@ class ShardFolder:
                 self.index[campaign] = Entry(row["key"], row["status"], shard)
 
     def _read(self, shard: int) -> dict[str, Row]:
-        import pyarrow.parquet as pq  # noqa: PLC0415 (optional)
+        import pyarrow.parquet as pq  # type: ignore[import-untyped]  # noqa: PLC0415 (optional)
 
         return {row["campaign"]: row for row in pq.read_table(self.path(shard)).to_pylist()}
 
@@ -148,11 +148,17 @@ class ShardFolder:
         except (pa.ArrowException, OSError, KeyError, ValueError) as error:
             what = " ".join(str(error).split())
             do = "Move it away; its campaigns are then done again."
-            raise InputError([Problem(str(path), f"no readable rows ({what})", "a Parquet file of sprung", do)]) from error
+            raise InputError(
+                [Problem(str(path), f"no readable rows ({what})", "a Parquet file of sprung", do)]
+            ) from error
         content = (table.schema.metadata or {}).get(_METADATA, b"").decode("utf-8", "replace")
         shard = path.stem.removeprefix("rows-")
         if content != self._content or not shard.isdecimal():
-            found = f"rows of {content}" if content and shard.isdecimal() else "a Parquet file that this batch did not write"
+            found = (
+                f"rows of {content}"
+                if content and shard.isdecimal()
+                else "a Parquet file that this batch did not write"
+            )
             do = "Choose another output folder, or move it away: all Parquet files of a folder are read together."
             raise InputError([Problem(str(path), found, f"rows of {self._content}", do)])
         names = zip(*(table.column(name).to_pylist() for name in ("campaign", "key", "status")), strict=True)

@@ -146,10 +146,8 @@ def _plain(value: Any) -> Any:
         return {str(name): _plain(item) for name, item in value.items()}
     if isinstance(value, Set):
         return sorted(map(canonical_text, value))
-    if isinstance(value, str | int | float | None):
-        return value
     if hasattr(value, "tolist"):
         return value.tolist()
-    if isinstance(value, Sequence):
+    if isinstance(value, Sequence) and not isinstance(value, str):
         return [_plain(item) for item in value]
-    return str(value)
+    return value if isinstance(value, str | int | float | None) else str(value)

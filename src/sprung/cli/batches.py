@@ -50,7 +50,9 @@ def fleet(
     ],
     output: Annotated[
         Path,
-        typer.Option("-o", "--output", metavar="OUT", help="Folder of the rows (*.parquet), fleet.html and fleet.json."),
+        typer.Option(
+            "-o", "--output", metavar="OUT", help="Folder of the rows (*.parquet), fleet.html and fleet.json."
+        ),
     ],
     workers: Workers = None,
     scheduler: Scheduler = None,
@@ -145,9 +147,7 @@ def _progress(as_json: bool) -> Iterator[Progress]:
     last: list[float] = []
 
     def report(step: Step) -> None:
-        if isinstance(step, BatchStep) and (
-            not last or not step.counts.left or time.monotonic() - last[-1] >= _EVERY
-        ):
+        if isinstance(step, BatchStep) and (not last or not step.counts.left or time.monotonic() - last[-1] >= _EVERY):
             last[:] = [time.monotonic()]
             complain(json.dumps(step.counts.document()))
 

@@ -93,7 +93,9 @@ def _listed(path: Path) -> Iterator[Path]:
     try:
         lines = path.read_text(encoding="utf-8-sig").splitlines()
     except (OSError, UnicodeDecodeError) as error:
-        found = "no such file or folder" if isinstance(error, FileNotFoundError) else f"a file that is no text ({error})"
+        found = (
+            "no such file or folder" if isinstance(error, FileNotFoundError) else f"a file that is no text ({error})"
+        )
         do = "Name a folder, or a text file with the path of one campaign in each line."
         raise InputError([Problem(str(path), found, "a folder with campaigns, or a list of them", do)]) from error
     for line in lines:

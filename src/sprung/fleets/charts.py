@@ -231,15 +231,16 @@ def _explanation(value: Real, directions: Real, limit: float) -> tuple[list[int]
     """Return the fewest parameters whose deviation explains a score, chosen one after the other, with size and uncertainty."""
     chosen: list[int] = []
     rest = value
-    while not chosen or (len(chosen) < value.size and np.abs(scored).max() > limit):
-        scored = hypothesis_scores(rest, directions)
-        scored[chosen] = 0
-        chosen.append(int(np.abs(scored).argmax()))
+    while True:
+        scores = np.abs(hypothesis_scores(rest, directions))
+        scores[chosen] = 0
+        if chosen and (scores.max() <= limit or len(chosen) == value.size):
+            break
+        chosen.append(int(scores.argmax()))
         own = directions[:, chosen]
-        shifts = np.linalg.lstsq(own, value, rcond=None)[0]
+        shifts = np.asarray(np.linalg.lstsq(own, value, rcond=None)[0], dtype=float)
         rest = value - own @ shifts
-        scored = hypothesis_scores(rest, directions)
-    stds = np.sqrt(np.diag(np.linalg.inv(own.T @ own)))
+    stds: Real = np.sqrt(np.diag(np.linalg.inv(own.T @ own)))
     order = np.argsort(-np.abs(shifts / stds))
     return [chosen[k] for k in order], shifts[order], stds[order]
 

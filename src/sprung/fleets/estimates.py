@@ -16,8 +16,8 @@ from sprung.vehicle import DERIVED, PARAMETERS
 Real = NDArray[np.float64]
 
 _FLOOR = 1e-4
-"""Standard deviation that every coordinate is given in addition, relative: exact constraints, such as a measured wheelbase, would
-make covariance matrices singular."""
+"""Standard deviation that every coordinate is given in addition, relative: exact constraints, such as a measured
+wheelbase, would make covariance matrices singular."""
 
 _ABSENT = 10.0
 """Standard deviation of a coordinate of which a vehicle tells nothing, relative."""
@@ -158,7 +158,7 @@ def collect_estimates(rows: Iterable[Row]) -> FleetEstimates | None:
         size = len(row["coordinates"])
         positions[i, there] = np.array(row["position"])[here]
         matrix = np.array(row["covariance"]).reshape(size, size)
-        covariances[np.ix_([i], there, there)] = matrix[np.ix_(here, here)]
+        covariances[i][np.ix_(there, there)] = matrix[np.ix_(here, here)]
     known = np.isfinite(positions)
     positive = np.array([PARAMETERS[name].positive for name in names])
     middle = np.nanmedian(np.where(known, positions, np.nan), axis=0)

@@ -94,9 +94,9 @@ class Fleet:
         require_pandas()
         import pandas as pd  # noqa: PLC0415 (optional)
 
-        return pd.DataFrame(read_rows(self.folder, ("campaign", "key", "status", "message", "seconds", *COLUMNS))).dropna(
-            axis="columns", how="all"
-        )
+        return pd.DataFrame(
+            read_rows(self.folder, ("campaign", "key", "status", "message", "seconds", *COLUMNS))
+        ).dropna(axis="columns", how="all")
 
     def document(self) -> dict[str, Any]:
         """Return the fleet as plain values: fleet.json."""
@@ -131,8 +131,8 @@ def fleet(
     source
         A folder: every ``campaign.toml`` below it. A text file with one campaign in each line. Or a sequence of paths.
     output
-        Folder of the rows, made if it is missing. A campaign whose content, options and version of sprung are those of its row is
-        not identified again; a changed one is, and its new row replaces the old one.
+        Folder of the rows, made if it is missing. A campaign whose content, options and version of sprung are those
+        of its row is not identified again; a changed one is, and its new row replaces the old one.
     workers
         Number of processes on this machine; by default one for each processor.
     scheduler
@@ -176,9 +176,7 @@ def fleet(
         types, small = survey_types(_watched(folder, verdicts, failures), one_type)
         rows = [row for one in types for row in one.rows()]
         write_table(folder / HIERARCHICAL_FOLDER, "estimates", rows, HIERARCHICAL_COLUMNS)
-    return Fleet(
-        folder, summary.counts, summary.computed, summary.gone, dict(verdicts), failures, types, small
-    )
+    return Fleet(folder, summary.counts, summary.computed, summary.gone, dict(verdicts), failures, types, small)
 
 
 def _listed(extras: str | Sequence[str] | None) -> list[str] | None:

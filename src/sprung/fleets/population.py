@@ -1,7 +1,8 @@
 """Mean and spread of a population of vehicles whose estimates have errors of their own: multivariate random effects.
 
 Vehicle i of a type has parameters θ_i ~ N(μ, T), and its test yields x_i ~ N(θ_i, V_i) with a known covariance V_i. Mean μ and
-between-vehicle covariance T are estimated by restricted maximum likelihood (REML; D. Harville, J. Am. Stat. Assoc. 72 (1977) 320)
+between-vehicle covariance T are estimated by restricted maximum likelihood (REML; D. Harville, J. Am. Stat. Assoc.
+72 (1977) 320)
 with the EM algorithm (N. Laird, J. Ware, Biometrics 38 (1982) 963). Given them, the best estimate of each vehicle is its
 conditional mean, the empirical Bayes estimate (C. Morris, J. Am. Stat. Assoc. 78 (1983) 47). Of few vehicles the likelihood may
 be largest without any spread, which would make all estimates equal and too certain: the prior |T|^(1/2) avoids that boundary
@@ -11,6 +12,7 @@ be largest without any spread, which would make all estimates equal and too cert
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -141,14 +143,14 @@ def estimate_vehicles(positions: Real, covariances: Real, population: Population
 
 def _fit(positions: Real, covariances: Real, correlated: bool) -> Population:
     """Maximise the restricted likelihood by the EM algorithm."""
-    count, width = positions.shape
+    count = len(positions)
     spread = _start(positions, covariances)
     last, iteration = -np.inf, 0
     while True:
-        weights = np.linalg.inv(covariances + spread)
-        mean_covariance = np.linalg.inv(weights.sum(axis=0))
-        mean = mean_covariance @ np.einsum("nij,nj->i", weights, positions)
-        residuals = np.einsum("nij,nj->ni", weights, positions - mean)
+        weights = np.asarray(np.linalg.inv(covariances + spread), dtype=float)
+        mean_covariance: Real = np.linalg.inv(weights.sum(axis=0))
+        mean = np.asarray(mean_covariance @ np.einsum("nij,nj->i", weights, positions), dtype=float)
+        residuals = np.asarray(np.einsum("nij,nj->ni", weights, positions - mean), dtype=float)
         value = _loglikelihood(weights, mean_covariance, residuals, positions - mean)
         penalised = value + 0.5 * np.linalg.slogdet(spread)[1]
         iteration += 1
@@ -174,7 +176,9 @@ def _start(positions: Real, covariances: Real) -> Real:
     return np.diag(np.maximum(total - own, np.minimum(total / 10, own) + _START**2))
 
 
-def _loglikelihood(weights: Real, mean_covariance: Real, residuals: Real, differences: Real) -> float:
+def _loglikelihood(
+    weights: Real, mean_covariance: Real, residuals: Real, differences: NDArray[np.floating[Any]]
+) -> float:
     """Return the restricted log-likelihood, up to a constant."""
     determinants = np.linalg.slogdet(weights)[1].sum() + np.linalg.slogdet(mean_covariance)[1]
     return float(0.5 * (determinants - np.einsum("ni,ni->", residuals, differences)))

@@ -1,7 +1,9 @@
 """Scores of vehicles in the order of their tests: how far each is from those before it, independent and standard normal.
 
-A vehicle is compared with the weighted mean of those before it; the covariance of the difference is that between vehicles, that of
-the vehicle's own estimate and that of the mean. Such differences, the recursive residuals, are independent (R. Brown, J. Durbin,
+A vehicle is compared with the weighted mean of those before it; the covariance of the difference is that between
+vehicles, that of
+the vehicle's own estimate and that of the mean. Such differences, the recursive residuals, are independent (R.
+Brown, J. Durbin,
 J. Evans, J. R. Stat. Soc. B 37 (1975) 149), and the chart needs no vehicles that are known to be good (a self-starting chart:
 D. Hawkins, J. Qual. Technol. 19 (1987) 195).
 """
@@ -9,6 +11,7 @@ D. Hawkins, J. Qual. Technol. 19 (1987) 195).
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,7 +35,8 @@ class Scores:
     Attributes
     ----------
     values
-        Independent and standard normal for vehicles in control, dimensionless, shape (vehicle, parameter); NaN for the first one.
+        Independent and standard normal for vehicles in control, dimensionless, shape (vehicle, parameter); NaN for
+        the first one.
     components
         Score of each single parameter: of the hypothesis that it alone deviates. Standard normal for vehicles in control,
         also where the spread is known from few vehicles; dimensionless, shape (vehicle, parameter).
@@ -58,7 +62,7 @@ class Scores:
     def periods(self) -> tuple[slice, ...]:
         """Vehicles between two shifts of the rig, in the order of the tests."""
         ends = [0, *(since for _, since in self.shifts), len(self.values)]
-        return tuple(slice(first, last) for first, last in zip(ends, ends[1:], strict=False))
+        return tuple(slice(first, last) for first, last in pairwise(ends))
 
 
 def score_vehicles(

@@ -1,4 +1,4 @@
-"""What a fleet tells: its types, their spread beside each vehicle's own error, the charts, and the estimates of each vehicle."""
+"""What a fleet tells: types, their spread beside each vehicle's own error, charts, and the estimates of each vehicle."""
 
 from __future__ import annotations
 
@@ -34,8 +34,8 @@ class ParameterSpread:
     spread, spread_std
         Standard deviation between vehicles, beyond the errors of their tests, and its standard error, % of the mean.
     error, hierarchical_error
-        Median standard uncertainty of a vehicle from its own test, and with the population, % of the mean; None where most tests
-        do not determine it.
+        Median standard uncertainty of a vehicle from its own test, and with the population, % of the mean; None
+        where most tests do not determine it.
     limits
         Within them is a vehicle in control with a probability of 95 %, tested with the median uncertainty; SI.
     """

@@ -1,4 +1,4 @@
-"""Studies with identifications: comparison of results, cross-validation, test planning, Monte Carlo, the example of `sprung demo`."""
+"""Studies with identifications: comparison, cross-validation, test planning, Monte Carlo, the example of `sprung demo`."""
 
 from sprung.study.comparison import ComparedResult, Comparison, Difference, QuantityComparison, ResultValue
 from sprung.study.cross_validation import Validation, validate

@@ -89,7 +89,12 @@ class MonteCarlo:
         import pandas as pd  # noqa: PLC0415 (optional)
 
         flat = {
-            name: {**asdict(one), "coverage": one.coverage.part, "coverage_low": one.coverage.low, "coverage_high": one.coverage.high}
+            name: {
+                **asdict(one),
+                "coverage": one.coverage.part,
+                "coverage_low": one.coverage.low,
+                "coverage_high": one.coverage.high,
+            }
             for name, one in self.parameters.items()
         }
         return pd.DataFrame.from_dict(flat, orient="index").rename_axis("parameter")
@@ -112,8 +117,8 @@ def monte_carlo(
     Parameters
     ----------
     vehicle
-        The true vehicle, or the path of its vehicle file, whose sensors, loads, drops, known quantities and model hold where the
-        test does not state them.
+        The true vehicle, or the path of its vehicle file, whose sensors, loads, drops, known quantities and model
+        hold where the test does not state them.
     test
         Arguments of `sprung.simulate`, such as ``sensors``, ``loads``, ``drops``, ``rate``, ``noise`` and ``known``. Known
         quantities with an uncertainty have another error in every campaign; those without value have the vehicle's.
@@ -123,8 +128,8 @@ def monte_carlo(
     jobs
         Number of processes on this machine; by default one for each processor.
     output
-        Folder of the rows, one for each campaign. A study of the same vehicle and test that is called again with it goes on where
-        it stopped. None: nothing is kept.
+        Folder of the rows, one for each campaign. A study of the same vehicle and test that is called again with it
+        goes on where it stopped. None: nothing is kept.
     scheduler
         Address of the scheduler of an existing Dask cluster instead of this machine.
     seed

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from sprung.batch import Row
 from sprung.display import shown
@@ -120,13 +121,15 @@ def accuracy_of(name: str, true: float, rows: Sequence[Row]) -> ParameterAccurac
     found = [(row[name], row[f"{name}_std"]) for row in known if row[name] is not None and row[f"{name}_std"]]
     undetermined = sum(row[name] is None for row in known)
     parameter = PARAMETERS[name]
-    values, stds = np.array(found).reshape(-1, 2).T
+    pairs: NDArray[np.float64] = np.array(found, dtype=float).reshape(-1, 2)
+    values, stds = pairs[:, 0], pairs[:, 1]
     # Intervals are those of `sprung.uncertainty.Estimate`: even in the logarithm of a positive parameter.
     with np.errstate(divide="ignore", invalid="ignore"):
         distances = np.log(values / true) * values / stds if parameter.positive else (values - true) / stds
     coverage = share(int((np.abs(distances) <= NORMAL_95).sum()), len(found))
     if len(found) < 2:
-        return ParameterAccuracy(true, parameter.unit, len(found), undetermined, *([None] * 5), coverage)
+        nothing = (None, None, None, None, None)
+        return ParameterAccuracy(true, parameter.unit, len(found), undetermined, *nothing, coverage)
     size = abs(true) or 1.0
     errors = 100 * (values - true) / size
     scatter = float(errors.std(ddof=1))

@@ -52,7 +52,9 @@ def _spread(one: FleetType) -> Picture:
     low, high = float(seen.min()) / 1.5, float(seen.max()) * 2
     half = NORMAL_95 * np.array([one.spread_std for one in parameters.values()])
     ends = np.clip([between - half, between + half], low, high)
-    marks: list[Mark] = [Curve(end, np.full(2, place), "simulated", width=1.6) for end, place in zip(ends.T, y, strict=True)]
+    marks: list[Mark] = [
+        Curve(end, np.full(2, place), "simulated", width=1.6) for end, place in zip(ends.T, y, strict=True)
+    ]
     marks += [
         Points(between, y, "simulated", "spread between vehicles"),
         Points(own, y, "first", "error of a vehicle, own test"),
@@ -65,8 +67,8 @@ def _spread(one: FleetType) -> Picture:
         "Spread between vehicles and errors",
         x,
         (panel,),
-        "Standard deviation between vehicles of every parameter with its 95 % interval, and the median standard uncertainty of a "
-        "vehicle from its own test and together with the others.",
+        "Standard deviation between vehicles of every parameter with its 95 % interval, and the median standard "
+        "uncertainty of a vehicle from its own test and together with the others.",
     )
 
 
@@ -74,7 +76,11 @@ def _rig(one: FleetType) -> Picture:
     chart = one.chart
     alarms = [alarm.number for alarm in chart.rig_alarms]
     rules = [
-        *(Rule(alarm.since, "fault", f"since {alarm.since}", dashed=True) for alarm in chart.rig_alarms if alarm.since > 0),
+        *(
+            Rule(alarm.since, "fault", f"since {alarm.since}", dashed=True)
+            for alarm in chart.rig_alarms
+            if alarm.since > 0
+        ),
     ]
     panel = _chart_panel("moving average", chart.rig_average, chart.rig_limit, alarms, rules)
     text = "; ".join(f"alarm at vehicle {alarm.number}, since vehicle {alarm.since}" for alarm in chart.rig_alarms)
@@ -122,7 +128,10 @@ def _parameter(one: FleetType, j: int) -> Picture:
     stds = np.sqrt(own.covariances[:, j, j])
     shown = own.known[:, j] & (stds < 1)
     numbers = np.arange(1, own.count + 1, dtype=float)
-    values, value_stds = own.values(own.positions)[:, j], own.stds(own.positions, np.sqrt(_diagonals(own.covariances)))[:, j]
+    values, value_stds = (
+        own.values(own.positions)[:, j],
+        own.stds(own.positions, np.sqrt(_diagonals(own.covariances)))[:, j],
+    )
     joint_values = own.values(joint.positions)[:, j]
     few = own.count <= _DOTS
     size = 0.8 if few else 0.5

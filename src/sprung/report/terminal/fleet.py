@@ -139,12 +139,26 @@ def monte_carlo_view(found: MonteCarlo) -> RenderableType:
     counts = found.counts
     text = f"{found.vehicle}: {counts.done} campaigns simulated and identified, {counts.failed} failed"
     there = counts.done + counts.failed - found.computed
-    parts: list[RenderableType] = [Text(f"{text}; {there} of them in an earlier run." if there else f"{text}.", style="bold")]
+    parts: list[RenderableType] = [
+        Text(f"{text}; {there} of them in an earlier run." if there else f"{text}.", style="bold")
+    ]
     for verdict, one in found.verdicts.items():
         parts.append(hanging_text("  - ", Text.assemble((verdict, COLOURS[verdict]), f": {_share(one)}")))
     for number, message in list(found.failures.items())[:_LISTED]:
         parts.append(hanging_text("  - ", f"campaign {number}: {message}"))
-    headers = ("", "true", "unit", "bias %", "± %", "scatter %", "± % ", "stated %", "coverage %", "95 % interval", "-")
+    headers: tuple[str, ...] = (
+        "",
+        "true",
+        "unit",
+        "bias %",
+        "± %",
+        "scatter %",
+        "± % ",
+        "stated %",
+        "coverage %",
+        "95 % interval",
+        "-",
+    )
     rows = tuple((name, *_accuracy_cells(one)) for name, one in found.parameters.items())
     if not any(row[-1] for row in rows):
         headers, rows = headers[:-1], tuple(row[:-1] for row in rows)
@@ -182,7 +196,9 @@ def _accuracy_cells(one: ParameterAccuracy) -> list[str]:
 
 
 def _share(one: Share) -> str:
-    return f"{100 * one.part:.1f} % ({one.count} of {one.of}; 95 % interval {100 * one.low:.1f} to {100 * one.high:.1f} %)"
+    return (
+        f"{100 * one.part:.1f} % ({one.count} of {one.of}; 95 % interval {100 * one.low:.1f} to {100 * one.high:.1f} %)"
+    )
 
 
 def _is_biased(one: ParameterAccuracy) -> bool:
