@@ -127,5 +127,6 @@ def studies(session: nox.Session) -> None:
         "differences",
         "modal",
         "real_cars",
+        "fleets",
     ):
         session.run("python", f"docs/studies/{study}.py", *(session.posargs or ("--processes", "2")))

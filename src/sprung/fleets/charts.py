@@ -28,8 +28,11 @@ inertia and rate alike; seconds that are too long make rates too small."""
 _ROUNDS = 8
 """Most repetitions of charts and population."""
 
-_SUSPICIOUS = 3.0
-"""Score of a single parameter above which a vehicle is left out of the population that it is first judged by."""
+_SUSPICIOUS = 3.5
+"""Robust score of a parameter above which a vehicle is left out of the population that it is first judged by."""
+
+_NORMAL_MAD = 1.4826
+"""Standard deviation of a normal distribution in units of its median absolute deviation."""
 
 
 @shown
@@ -152,19 +155,18 @@ def chart_vehicles(estimates: FleetEstimates) -> tuple[ControlChart, Population]
     """
     width = len(estimates.names)
     rig_limit = alarm_limit(width)
-    in_control, positions = np.ones(estimates.count, dtype=bool), estimates.positions
+    # A vehicle that deviates widens the spread that it is judged by: the suspicious ones are left out to begin with.
+    in_control, positions = ~_suspicious(estimates), estimates.positions
     alarms: set[object] | None = None
-    for number in range(_ROUNDS):
+    for _ in range(_ROUNDS):
         population = fit_population(positions[in_control], estimates.covariances[in_control])
         limit = largest_component(population.spread + _typical(estimates.covariances), RUN_LENGTH)
-        # A vehicle that deviates widens the spread that it is judged by: the suspicious ones are left out to begin with.
-        limit = limit if number else min(limit, _SUSPICIOUS)
         scores = score_vehicles(estimates.positions, estimates.covariances, population, limit, rig_limit, WEIGHT)
         found = {*scores.shifts, *np.flatnonzero(scores.deviating).tolist()}
         in_control = ~scores.deviating if (~scores.deviating).sum() >= FEWEST else in_control
         means = _period_means(estimates, scores, population, in_control)
         positions = _without_shifts(estimates, scores, means)
-        if found == alarms and number > 1:
+        if found == alarms:
             break
         alarms = found
     charted = np.isfinite(scores.values[:, 0])
@@ -179,6 +181,17 @@ def chart_vehicles(estimates: FleetEstimates) -> tuple[ControlChart, Population]
         offsets=positions - estimates.positions,
     )
     return chart, fit_population(positions[in_control], estimates.covariances[in_control])
+
+
+def _suspicious(estimates: FleetEstimates) -> NDArray[np.bool_]:
+    """Return which vehicles are far from the median in units of the median absolute deviation; at most a third of them."""
+    variances = np.diagonal(estimates.covariances, axis1=1, axis2=2)
+    distances = np.abs(estimates.positions - np.median(estimates.positions, axis=0))
+    spread = (_NORMAL_MAD * np.median(distances, axis=0)) ** 2
+    # A test that is less accurate than most may be further away.
+    excess = np.maximum(variances - np.median(variances, axis=0), 0.0)
+    scores = (distances / np.sqrt(spread + excess)).max(axis=1)
+    return np.asarray(scores > max(_SUSPICIOUS, float(np.quantile(scores, 2 / 3))))
 
 
 def _typical(covariances: Real) -> Real:
