@@ -187,10 +187,10 @@ def _suspicious(estimates: FleetEstimates) -> NDArray[np.bool_]:
     """Return which vehicles are far from the median in units of the median absolute deviation; at most a third of them."""
     variances = np.diagonal(estimates.covariances, axis1=1, axis2=2)
     distances = np.abs(estimates.positions - np.median(estimates.positions, axis=0))
-    spread = (_NORMAL_MAD * np.median(distances, axis=0)) ** 2
+    usual = np.median(variances, axis=0)
+    spread = np.maximum((_NORMAL_MAD * np.median(distances, axis=0)) ** 2, usual)
     # A test that is less accurate than most may be further away.
-    excess = np.maximum(variances - np.median(variances, axis=0), 0.0)
-    scores = (distances / np.sqrt(spread + excess)).max(axis=1)
+    scores = (distances / np.sqrt(spread + np.maximum(variances - usual, 0.0))).max(axis=1)
     return np.asarray(scores > max(_SUSPICIOUS, float(np.quantile(scores, 2 / 3))))
 
 
