@@ -237,5 +237,7 @@ def test_the_command(identified: Identified, tmp_path: Path) -> None:
     assert {path.name for path in (tmp_path / "out").iterdir()} >= {"fleet.html", "fleet.json", "rows-00001.parquet"}
     empty = run("fleet", folder / "cars" / "unreadable", "-o", tmp_path / "other", "--workers", "1")
     assert empty.status == 2
-    assert "found no campaign that can be used" in empty.err
+    assert "unreadable/campaign.toml: found campaign.toml: line 1" in empty.err
+    assert "expected a campaign that can be identified" in empty.err
+    assert not (tmp_path / "other" / "fleet.html").exists()
     assert fleet.counts.done == 4

@@ -84,6 +84,9 @@ def fleet(
             retry=retry,
             progress=progress,
         )
+        if not found.counts.done:
+            expected, do = "a campaign that can be identified", "Correct it: its row is replaced by the next run."
+            raise InputError(Problem(*failure, expected, do) for failure in found.failures.items())
         progress(Step("drawing the page"))
         written = sprung.report.write_fleet(found, output, overwrite=force)
     if as_json:
@@ -91,10 +94,6 @@ def fleet(
     else:
         say(sprung.report.text_of(sprung.report.fleet_view(found)))
         say(f"\nWritten: {output / '*.parquet'}, {', '.join(map(str, written))}\n")
-    if not found.counts.done:
-        first = next(iter(found.failures.items()))
-        do = f"The first one, {first[0]}: {first[1]}"
-        raise InputError([Problem(str(source), "no campaign that can be used", "one or more", do)])
 
 
 @app.command(epilog="Example: [bold]sprung study vehicle.toml --campaigns 200 -o study[/bold]")
