@@ -170,3 +170,16 @@ def test_differences(tmp_path: Path) -> None:
         assert 0.2 < case["z_rms"] < (3 if case["change"] == 0 else 30)
     # 75 N s/m of 1500, told to 8 or so.
     assert [case["damper_seen"] for case in numbers["cases"] if case["change"] == 0.05] == [1.0, 1.0]
+
+
+@pytest.mark.long
+def test_fleets(tmp_path: Path) -> None:
+    page, numbers = study("fleets.py", tmp_path, "--campaigns", "12", "--fleets", "1")
+    assert {one["parameter"] for one in numbers["errors"]} >= {"m_s", "k_sf", "a", "wheelbase"}
+    for one in numbers["errors"]:
+        assert one["vehicles"] == 12
+        assert 0 <= one["single_coverage"] <= 100
+        assert one["hierarchical_stated"] <= one["single_stated"] * 1.01
+    assert [one["computed"] for one in numbers["identified"]] == [12, 7]  # from the middle on, and the weak dampers
+    assert [one["count"] for one in numbers["charts"]] == [1] * 4
+    assert "python docs/studies/fleets.py --campaigns 12 --fleets 1" in page

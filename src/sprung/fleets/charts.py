@@ -31,6 +31,9 @@ _ROUNDS = 8
 _SUSPICIOUS = 3.5
 """Robust score of a parameter above which a vehicle is left out of the population that it is first judged by."""
 
+_ALIKE = 4.0
+"""Difference of twice the log-likelihood below which two explanations are both stated."""
+
 _NORMAL_MAD = 1.4826
 """Standard deviation of a normal distribution in units of its median absolute deviation."""
 
@@ -90,6 +93,8 @@ class RigAlarm:
         The vehicle with which the shift most probably began. From the alarm on, vehicles are compared with those since then.
     deviation
         What explains it best, and by how much it has changed.
+    alternatives
+        What explains it nearly as well: twice the log-likelihood is less than 4 smaller.
     """
 
     number: int
@@ -97,6 +102,7 @@ class RigAlarm:
     since: int
     since_label: str
     deviation: Deviation
+    alternatives: tuple[Deviation, ...] = ()
 
 
 @shown
@@ -270,11 +276,16 @@ def _rig_alarms(estimates: FleetEstimates, scores: Scores, means: Sequence[_Peri
         whiten = np.linalg.inv(np.linalg.cholesky(before.covariance + after.covariance))
         difference = whiten @ (after.mean - before.mean)
         names, directions, positive = _hypotheses(estimates, whiten)
-        best = int(np.abs(hypothesis_scores(difference, directions)).argmax())
-        direction = directions[:, best]
-        shift = float(direction @ difference / (direction @ direction))
-        found = _deviation(names[best], shift, float(1 / np.linalg.norm(direction)), positive[best])
-        yield RigAlarm(alarm + 1, estimates.labels[alarm], since + 1, estimates.labels[since], found)
+        scored = np.abs(hypothesis_scores(difference, directions))
+        lengths = np.linalg.norm(directions, axis=0)
+        shifts = directions.T @ difference / lengths**2
+        found = [
+            _deviation(names[j], float(shifts[j]), float(1 / lengths[j]), positive[j])
+            for j in np.argsort(-scored)
+            if scored[j] ** 2 > scored.max() ** 2 - _ALIKE
+        ]
+        labels = estimates.labels
+        yield RigAlarm(alarm + 1, labels[alarm], since + 1, labels[since], found[0], tuple(found[1:]))
 
 
 def _hypotheses(estimates: FleetEstimates, directions: Real) -> tuple[list[str], Real, list[bool]]:

@@ -32,9 +32,10 @@ class ParameterSpread:
     mean, mean_std
         Of the population, and its standard uncertainty, SI.
     spread, spread_std
-        Standard deviation between vehicles, beyond the errors of their tests, and its standard error, % of the mean.
+        Standard deviation between vehicles, beyond the errors of their tests, and its standard error, % of the mean (of
+        the usual size where a value may be zero).
     error, hierarchical_error
-        Median standard uncertainty of a vehicle from its own test, and with the population, % of the mean; None
+        Median standard uncertainty of a vehicle from its own test, and with the population, likewise in %; None
         where most tests do not determine it.
     limits
         Within them is a vehicle in control with a probability of 95 %, tested with the median uncertainty; SI.
@@ -86,16 +87,15 @@ class FleetType:
         means = own.values(population.mean)
         low, high = own.values(population.mean - half), own.values(population.mean + half)
         mean_uncertainties = own.stds(population.mean, mean_stds)
-        scale = 100 * np.where(own.positive, 1.0, 1 / np.maximum(np.abs(population.mean), 1e-300))
         return {
             name: ParameterSpread(
                 quantity_of(name).unit,
                 float(means[j]),
                 float(mean_uncertainties[j]),
-                float(scale[j] * population.std[j]),
-                float(scale[j] * population.std[j] * population.std_error[j]),
-                float(scale[j] * error[j]) if error[j] < 1 else None,
-                float(scale[j] * hierarchical[j]),
+                float(100 * population.std[j]),
+                float(100 * population.std[j] * population.std_error[j]),
+                float(100 * error[j]) if error[j] < 1 else None,
+                float(100 * hierarchical[j]),
                 (float(low[j]), float(high[j])),
             )
             for j, name in enumerate(own.names)

@@ -14,6 +14,9 @@ from sprung.study import MonteCarlo, ParameterAccuracy, Share
 from sprung.tables import Table, percent_text, unit_text
 from sprung.uncertainty import round_by_uncertainty
 
+_ALTERNATIVES = 2
+"""Largest number of further explanations of a drift that are listed."""
+
 _LISTED = 20
 """Largest number of failures or vehicles that the terminal lists."""
 
@@ -102,8 +105,9 @@ def spread_table(one: FleetType) -> Table:
 def alarm_sentences(one: FleetType) -> Iterator[str]:
     """Yield the alarms of a type, one sentence each, and how often they are false."""
     for alarm in one.chart.rig_alarms:
+        what = " or ".join(map(_text, (alarm.deviation, *alarm.alternatives[:_ALTERNATIVES])))
         yield (
-            f"rig: {_text(alarm.deviation)} in all vehicles since number {alarm.since} ({alarm.since_label}), detected at "
+            f"rig: {what} in all vehicles since number {alarm.since} ({alarm.since_label}), detected at "
             f"number {alarm.number} ({alarm.label})"
         )
     for vehicle in one.chart.vehicle_alarms:
