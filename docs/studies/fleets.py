@@ -188,10 +188,12 @@ def main() -> None:
     parser.add_argument(
         "--fleets", type=int, default=100, help="how many fleets for each row of alarms (default %(default)s)"
     )
+    parser.add_argument("--keep", type=Path, help="folder in which campaigns and rows are kept, to go on after a stop")
     options = parser.parse_args()
     fleet = members(options.campaigns)
     with tempfile.TemporaryDirectory() as temporary:
-        folder, output = Path(temporary) / "campaigns", Path(temporary) / "out"
+        kept = options.keep or Path(temporary)
+        folder, output = kept / "campaigns", kept / "out"
         sound = identified(fleet, folder, output, options.processes)
         errors = compared(sound.types[0], fleet)
         report_progress(f"{sound.counts.done} vehicles in control")

@@ -24,9 +24,6 @@ Real = NDArray[np.float64]
 _STEPS, _TOLERANCE = 2000, 1e-4
 """Most iterations, and gain of log-likelihood per iteration at which they end."""
 
-_START = 1e-3
-"""Smallest standard deviation between vehicles at the start of the iteration."""
-
 FEWEST = 3
 """Smallest number of vehicles of which a spread is estimated."""
 
@@ -173,7 +170,8 @@ def _fit(positions: Real, covariances: Real, correlated: bool) -> Population:
 def _start(positions: Real, covariances: Real) -> Real:
     own = np.median(np.diagonal(covariances, axis1=1, axis2=2), axis=0)
     total = np.var(positions, axis=0, ddof=1)
-    return np.diag(np.maximum(total - own, np.minimum(total / 10, own) + _START**2))
+    # Where all vehicles are equal, the prior's maximum is at the own variance over their number.
+    return np.diag(np.maximum(total - own, own / len(positions)))
 
 
 def _loglikelihood(
