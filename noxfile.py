@@ -129,5 +129,6 @@ def studies(session: nox.Session) -> None:
         "ride",
         "modal",
         "real_cars",
+        "fleets",
     ):
         session.run("python", f"docs/studies/{study}.py", *(session.posargs or ("--processes", "2")))

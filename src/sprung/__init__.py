@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from sprung.campaign import Campaign, Drop, DropTest, read, schema_text, to_sep005, write
     from sprung.checking import check
     from sprung.drafting import draft, draft_campaigns
+    from sprung.fleets import fleet
     from sprung.modal_survey import is_recordings, modes
     from sprung.results import Result, load
     from sprung.simulation import simulate
@@ -47,6 +48,7 @@ __all__ = [
     "compare",
     "draft",
     "draft_campaigns",
+    "fleet",
     "identify",
     "is_recordings",
     "load",
@@ -75,6 +77,7 @@ _HOME = {
     "compare": "study",
     "draft": "drafting",
     "draft_campaigns": "drafting",
+    "fleet": "fleets",
     "identify": "analysis",
     "is_recordings": "modal_survey",
     "load": "results",

@@ -194,3 +194,16 @@ def test_ride(tmp_path: Path) -> None:
         for one in case["numbers"].values():
             assert one["coverage_percent"] in (0, 100)
             assert one["rms_error_over_std"] < 6
+
+
+@pytest.mark.long
+def test_fleets(tmp_path: Path) -> None:
+    page, numbers = study("fleets.py", tmp_path, "--campaigns", "12", "--fleets", "1")
+    assert {one["parameter"] for one in numbers["errors"]} >= {"m_s", "k_sf", "a", "wheelbase"}
+    for one in numbers["errors"]:
+        assert one["vehicles"] == 12
+        assert 0 <= one["single_coverage"] <= 100
+        assert one["hierarchical_stated"] <= one["single_stated"] * 1.01
+    assert [one["computed"] for one in numbers["identified"]] == [12, 7]  # from the middle on, and the weak dampers
+    assert [one["count"] for one in numbers["charts"]] == [1] * 4
+    assert "python docs/studies/fleets.py --campaigns 12 --fleets 1" in page

@@ -11,16 +11,19 @@ from sprung.report.folder import (
     add_report,
     save_result,
     write_check,
+    write_fleet,
     write_report,
     write_validation,
 )
 from sprung.report.page.check import CHECK_FILE, check_html
+from sprung.report.page.fleet import FLEET_FILE, fleet_html
 from sprung.report.page.pdf import pdf_of
 from sprung.report.page.report import render_report, report_html
 from sprung.report.pictures.amplitudes import amplitude_pictures
 from sprung.report.pictures.channels import channels_picture
 from sprung.report.pictures.curves import curve_pictures
 from sprung.report.pictures.decays import LoadDecays, decays_by_load
+from sprung.report.pictures.fleets import fleet_pictures
 from sprung.report.pictures.motions import motion_picture
 from sprung.report.pictures.parameters import parameters_picture
 from sprung.report.pictures.recordings import landing_picture, recording_picture
@@ -35,6 +38,7 @@ from sprung.report.sketch.svg import sketch_svg
 from sprung.report.terminal.check import check_view
 from sprung.report.terminal.comparison import comparison_view
 from sprung.report.terminal.draft import draft_view
+from sprung.report.terminal.fleet import fleet_view, monte_carlo_view
 from sprung.report.terminal.layout import text_of
 from sprung.report.terminal.modal import modes_view
 from sprung.report.terminal.paper import paper_view
@@ -47,6 +51,7 @@ from sprung.report.terminal.validation import validation_view
 __all__ = [
     "BODY_EDGES",
     "CHECK_FILE",
+    "FLEET_FILE",
     "LIGHT",
     "REPORT_FILES",
     "RESULT_FILES",
@@ -77,8 +82,12 @@ __all__ = [
     "draft_view",
     "draw_check",
     "draw_validation",
+    "fleet_html",
+    "fleet_pictures",
+    "fleet_view",
     "landing_picture",
     "modes_view",
+    "monte_carlo_view",
     "motion_picture",
     "paper_view",
     "parameters_picture",
@@ -102,6 +111,7 @@ __all__ = [
     "vehicle_sketch",
     "wire_frame",
     "write_check",
+    "write_fleet",
     "write_report",
     "write_validation",
 ]

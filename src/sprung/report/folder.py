@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import os
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -10,8 +12,10 @@ from typing import NamedTuple
 from sprung.checking import Check
 from sprung.errors import InputError, record_failure
 from sprung.files import atomic_write
+from sprung.fleets import Fleet
 from sprung.report.drawings import draw_check
 from sprung.report.page.check import CHECK_FILE, check_html
+from sprung.report.page.fleet import FLEET_FILE, fleet_html
 from sprung.report.page.pdf import PDF_FILE, pdf_of
 from sprung.report.page.report import FILE, render_report
 from sprung.results import Result, load
@@ -159,6 +163,34 @@ def write_check(
     files = ({CHECK_FILE: check_html(check)} if page else {}) | (draw_check(check) if drawings else {})
     atomic_write(folder, {name: text.encode() for name, text in files.items()}, overwrite=overwrite)
     return tuple(folder / name for name in files)
+
+
+def write_fleet(fleet: Fleet, folder: str | os.PathLike[str], *, overwrite: bool = False) -> tuple[Path, ...]:
+    """Write the page of a fleet, and its numbers, into a folder.
+
+    Parameters
+    ----------
+    fleet
+        From `sprung.fleet`.
+    folder
+        Made if it does not exist. Files that sprung wrote there are replaced.
+    overwrite
+        Whether other files of the same names, and files that were changed since sprung wrote them, are replaced too.
+
+    Returns
+    -------
+    tuple of Path
+        fleet.html and fleet.json.
+
+    Raises
+    ------
+    InputError
+        If such files would be overwritten, or the folder cannot be written.
+    """
+    document = json.dumps(fleet.document(), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+    files = {FLEET_FILE: fleet_html(fleet).encode(), "fleet.json": document.encode()}
+    atomic_write(folder, files, overwrite=overwrite)
+    return tuple(Path(folder) / name for name in files)
 
 
 def write_validation(

@@ -1,0 +1,214 @@
+"""What a fleet tells: types, their spread beside each vehicle's own error, charts, and the estimates of each vehicle."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sprung.batch import Row
+from sprung.display import shown
+from sprung.fleets.charts import ControlChart, chart_vehicles
+from sprung.fleets.estimates import FleetEstimates, collect_estimates, quantity_of
+from sprung.fleets.population import FEWEST, Population, VehicleEstimates, estimate_vehicles
+from sprung.uncertainty import NORMAL_95
+
+Real = NDArray[np.float64]
+
+
+@shown
+@dataclass(frozen=True, slots=True)
+class ParameterSpread:
+    """One parameter of the vehicles of a type.
+
+    Attributes
+    ----------
+    unit
+        SI.
+    mean, mean_std
+        Of the population, and its standard uncertainty, SI.
+    spread, spread_std
+        Standard deviation between vehicles, beyond the errors of their tests, and its standard error, % of the mean (of
+        the usual size where a value may be zero).
+    error, hierarchical_error
+        Median standard uncertainty of a vehicle from its own test, and with the population, likewise in %; None
+        where most tests do not determine it.
+    limits
+        Within them is a vehicle in control with a probability of 95 %, tested with the median uncertainty; SI.
+    """
+
+    unit: str
+    mean: float
+    mean_std: float
+    spread: float
+    spread_std: float
+    error: float | None
+    hierarchical_error: float
+    limits: tuple[float, float]
+
+
+@shown
+@dataclass(frozen=True, eq=False)
+class FleetType:
+    """The vehicles of one type.
+
+    Attributes
+    ----------
+    name
+        Name of the type.
+    estimates
+        Of each vehicle from its own test.
+    population
+        Mean and spread.
+    chart
+        Control charts.
+    hierarchical
+        Estimates of each vehicle with the population; those of deviating vehicles are their own.
+    """
+
+    name: str
+    estimates: FleetEstimates
+    population: Population
+    chart: ControlChart
+    hierarchical: VehicleEstimates
+
+    @property
+    def parameters(self) -> dict[str, ParameterSpread]:
+        """Spread and errors of each parameter, by name."""
+        own, population = self.estimates, self.population
+        stds = np.sqrt(np.diagonal(own.covariances, axis1=1, axis2=2))
+        error, hierarchical = np.median(stds, axis=0), np.median(self.hierarchical.stds, axis=0)
+        mean_stds = np.sqrt(np.diag(population.mean_covariance))
+        half = NORMAL_95 * np.sqrt(population.std**2 + mean_stds**2 + np.where(error < 1, error, 0.0) ** 2)
+        means = own.values(population.mean)
+        low, high = own.values(population.mean - half), own.values(population.mean + half)
+        mean_uncertainties = own.stds(population.mean, mean_stds)
+        return {
+            name: ParameterSpread(
+                quantity_of(name).unit,
+                float(means[j]),
+                float(mean_uncertainties[j]),
+                float(100 * population.std[j]),
+                float(100 * population.std[j] * population.std_error[j]),
+                float(100 * error[j]) if error[j] < 1 else None,
+                float(100 * hierarchical[j]),
+                (float(low[j]), float(high[j])),
+            )
+            for j, name in enumerate(own.names)
+        }
+
+    def rows(self) -> list[Row]:
+        """Return a row for each parameter of each vehicle: value and standard uncertainty of its own test, and with the others.
+
+        Returns
+        -------
+        list of Row
+            With the columns of `sprung.fleets.HIERARCHICAL_COLUMNS`, SI.
+        """
+        own, joint = self.estimates, self.hierarchical
+        single_stds = np.sqrt(np.diagonal(own.covariances, axis1=1, axis2=2))
+        values, stds = own.values(own.positions), own.stds(own.positions, single_stds)
+        joint_values, joint_stds = own.values(joint.positions), own.stds(joint.positions, joint.stds)
+        deviating = {alarm.campaign for alarm in self.chart.vehicle_alarms}
+        rows: list[Row] = []
+        for i, (campaign, label) in enumerate(zip(own.campaigns, own.labels, strict=True)):
+            for j, name in enumerate(own.names):
+                if not own.known[i, j]:
+                    continue
+                is_determined = single_stds[i, j] < 1
+                rows.append(
+                    {
+                        "type": self.name,
+                        "campaign": campaign,
+                        "label": label,
+                        "parameter": name,
+                        "unit": quantity_of(name).unit,
+                        "single": float(values[i, j]) if is_determined else None,
+                        "single_std": float(stds[i, j]) if is_determined else None,
+                        "hierarchical": float(joint_values[i, j]),
+                        "hierarchical_std": float(joint_stds[i, j]),
+                        "deviating": int(campaign in deviating),
+                    }
+                )
+        return rows
+
+    def document(self) -> dict[str, Any]:
+        """Return the type as plain values."""
+        chart = self.chart
+        return {
+            "name": self.name,
+            "vehicles": self.estimates.count,
+            "correlated": self.population.correlated,
+            "parameters": {name: asdict(spread) for name, spread in self.parameters.items()},
+            "run_length": chart.run_length,
+            "vehicle_limit": chart.vehicle_limit,
+            "rig_limit": chart.rig_limit,
+            "vehicle_alarms": [asdict(alarm) for alarm in chart.vehicle_alarms],
+            "rig_alarms": [asdict(alarm) for alarm in chart.rig_alarms],
+        }
+
+
+def survey_types(rows: Iterable[Row], one_type: bool = False) -> tuple[tuple[FleetType, ...], Mapping[str, int]]:
+    """Return the types of a fleet, and the names of those with too few vehicles.
+
+    Parameters
+    ----------
+    rows
+        With the columns of `NEEDED`.
+    one_type
+        Whether all vehicles are of one type; otherwise those of one name are.
+
+    Returns
+    -------
+    types
+        In the order of their names.
+    small
+        Number of vehicles by name, of types with fewer than three.
+    """
+    groups: dict[str, list[Row]] = {}
+    for row in rows:
+        if row["status"] == "done" and row["coordinates"]:
+            groups.setdefault("all vehicles" if one_type else row["vehicle"] or "unnamed", []).append(row)
+    types, small = [], {}
+    for name, group in sorted(groups.items()):
+        if len(group) < FEWEST:
+            small[name] = len(group)
+        elif (estimates := collect_estimates(in_test_order(group))) is not None:
+            types.append(_survey(name, estimates))
+    return tuple(types), small
+
+
+def _survey(name: str, estimates: FleetEstimates) -> FleetType:
+    chart, population = chart_vehicles(estimates)
+    offsets = chart.offsets
+    joint = estimate_vehicles(estimates.positions + offsets, estimates.covariances, population)
+    alone = np.isin(estimates.campaigns, [alarm.campaign for alarm in chart.vehicle_alarms])
+    hierarchical = VehicleEstimates(
+        np.where(alone[:, None], estimates.positions, joint.positions - offsets),
+        np.where(alone[:, None, None], estimates.covariances, joint.covariances),
+    )
+    return FleetType(name, estimates, population, chart, hierarchical)
+
+
+def in_test_order(rows: Sequence[Row]) -> list[Row]:
+    """Return rows in the order of the tests: by date where every campaign states one, then by path, numbers by their size.
+
+    Parameters
+    ----------
+    rows
+        With the columns ``date`` and ``campaign``.
+
+    Returns
+    -------
+    list of Row
+    """
+    dated = all(row["date"] for row in rows)
+    return sorted(rows, key=lambda row: (row["date"] if dated else "", _natural(row["campaign"])))
+
+
+def _natural(path: str) -> list[tuple[int, int, str]]:
+    return [(0, int(part), "") if part.isdecimal() else (1, 0, part) for part in re.split(r"(\d+)", path) if part]

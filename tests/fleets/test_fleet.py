@@ -1,0 +1,243 @@
+"""`sprung.fleet`: found campaigns, keys, rows, failures, resume and what the vehicles tell together."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import sprung
+from command_line import run
+from sprung.batch import read_rows
+from sprung.errors import InputError
+from sprung.fleets import COLUMNS, campaign_key, collect_estimates, find_campaigns, in_test_order, row_of, survey_types
+from sprung.fleets.estimates import label_vehicles
+from sprung.report import fleet_html, fleet_view, text_of
+from sprung.simulation import simulate
+from sprung.uncertainty import KnownValue
+from sprung.vehicle import TABLE_1_CAR, Vehicle
+
+DROPS: Any = ({"wheels": ("fl", "fr")}, {"wheels": ("fl", "rl")})
+# The linear model and no fall: the tests are about many campaigns, not about one.
+OPTIONS: Any = {"extras": (), "tracks": "shared", "fall": False}
+
+
+def write_car(folder: Path, number: int, **changes: float) -> Path:
+    vehicle = Vehicle({**TABLE_1_CAR.parameters, **changes}, name="Table 1 car")
+    campaign = simulate(
+        vehicle, drops=DROPS, seed=number, duration=1.5, known={"total_mass": KnownValue(vehicle.total_mass, 5.0)}
+    )
+    return sprung.write(replace(campaign, identification=f"W{number:02d}"), folder / f"car_{number}", overwrite=True)
+
+
+@pytest.fixture(scope="module")
+def identified(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, sprung.fleets.Fleet]:
+    """Return a folder with four cars and one unreadable campaign, and the fleet; the rows are in its folder out."""
+    folder = tmp_path_factory.mktemp("fleet")
+    for number in range(1, 5):
+        write_car(folder / "cars", number, k_sf=17000.0 * (1 + 0.02 * number))
+    (folder / "cars" / "unreadable").mkdir()
+    (folder / "cars" / "unreadable" / "campaign.toml").write_text("[vehicle\n")
+    return folder, sprung.fleet(folder / "cars", folder / "out", workers=2, **OPTIONS)
+
+
+Identified = tuple[Path, sprung.fleets.Fleet]
+
+
+def rows(folder: Path) -> dict[str, dict[str, Any]]:
+    found = list(read_rows(folder, ("campaign", "key", "status", "message", *COLUMNS)))
+    assert len({row["campaign"] for row in found}) == len(found)
+    return {Path(row["campaign"]).parent.name: row for row in found}
+
+
+def test_every_campaign_has_its_row(identified: Identified) -> None:
+    folder, fleet = identified
+    assert (fleet.counts.done, fleet.counts.failed, fleet.computed, fleet.gone) == (4, 1, 5, ())
+    found = rows(folder / "out")
+    assert found.keys() == {"car_1", "car_2", "car_3", "car_4", "unreadable"}
+    assert "expected TOML" in found["unreadable"]["message"]
+    assert list(fleet.failures) == [(folder / "cars" / "unreadable" / "campaign.toml").resolve().as_posix()]
+    row = found["car_3"]
+    assert (row["status"], row["vehicle"], row["identification"], row["drops"]) == ("done", "Table 1 car", "W03", 2)
+    assert row["k_sf"] == pytest.approx(17000 * 1.06, abs=4 * row["k_sf_std"])
+
+
+def test_a_row_is_the_result_of_identify(identified: Identified) -> None:
+    folder, _ = identified
+    result = sprung.identify(folder / "cars" / "car_2", **OPTIONS)
+    row = rows(folder / "out")["car_2"]
+    for name, estimate in {**result.parameters, "front_ride_frequency": result.derived["front_ride_frequency"]}.items():
+        assert row[name] == pytest.approx(estimate.value, rel=1e-9)
+        assert row[f"{name}_std"] == pytest.approx(estimate.std, rel=1e-6)
+    # Position and covariance are those of the result, of logarithms.
+    names = row["coordinates"]
+    matrix = np.array(row["covariance"]).reshape(len(names), len(names))
+    values = np.array([result.parameters[name].value for name in names])
+    np.testing.assert_allclose(np.exp(row["position"]), values)
+    own = result.covariance
+    there = [names.index(name) for name in own.names]
+    np.testing.assert_allclose(
+        matrix[np.ix_(there, there)] * np.outer(values[there], values[there]), own.matrix, rtol=1e-6, atol=1e-12
+    )
+
+
+def test_it_goes_on_and_does_a_changed_recording_anew(identified: Identified, tmp_path: Path) -> None:
+    folder, _ = identified
+    shutil.copytree(folder / "out", tmp_path / "out")
+    again = sprung.fleet(folder / "cars", tmp_path / "out", workers=1, **OPTIONS)
+    assert (again.computed, again.counts.done, again.counts.failed) == (0, 4, 1)
+    before = rows(tmp_path / "out")
+    recording = folder / "cars" / "car_1" / "empty_roll_left.csv"
+    lines = recording.read_text().splitlines(keepends=True)
+    try:
+        recording.write_text("".join(lines[:-50]))
+        changed = sprung.fleet(folder / "cars", tmp_path / "out", workers=1, **OPTIONS)
+    finally:
+        recording.write_text("".join(lines))
+    after = rows(tmp_path / "out")
+    assert changed.computed == 1
+    assert after["car_1"]["key"] != before["car_1"]["key"]
+    assert after["car_1"]["k_sf"] != before["car_1"]["k_sf"]
+    assert {name: row for name, row in after.items() if name != "car_1"} == {
+        name: row for name, row in before.items() if name != "car_1"
+    }
+
+
+def test_the_page_names_types_and_failures(identified: Identified, tmp_path: Path) -> None:
+    _, fleet = identified
+    page = fleet_html(fleet)
+    assert page == fleet_html(fleet)
+    assert "Table 1 car" in page
+    assert "unreadable/campaign.toml" in page
+    assert "http://" not in page.replace("http://www.w3.org", "")
+    assert "https://" not in page
+    assert page.count('<svg class="picture"') == 3 + len(fleet.types[0].estimates.names)
+    shown = text_of(fleet_view(fleet))
+    assert "4 campaigns identified (4 accept), 1 failed" in shown
+    written = sprung.report.write_fleet(fleet, tmp_path)
+    document = json.loads(written[1].read_text())
+    assert document["types"][0]["parameters"]["k_sf"]["unit"] == "N/m"
+
+
+def test_estimates_with_the_others_are_a_table(identified: Identified) -> None:
+    folder, fleet = identified
+    table = list(
+        read_rows(
+            folder / "out" / "hierarchical",
+            ("type", "label", "parameter", "single", "hierarchical", "hierarchical_std"),
+        )
+    )
+    assert {row["label"] for row in table} == {"W01", "W02", "W03", "W04"}
+    assert {row["parameter"] for row in table} == {*fleet.types[0].estimates.names}
+    springs = {row["label"]: row for row in table if row["parameter"] == "k_sf"}
+    for row in springs.values():
+        assert row["hierarchical"] == pytest.approx(row["single"], rel=0.01)
+    assert springs["W04"]["hierarchical"] > springs["W01"]["hierarchical"]
+
+
+def test_the_table_for_pandas(identified: Identified) -> None:
+    pytest.importorskip("pandas")
+    _, fleet = identified
+    table = fleet.to_dataframe()
+    assert len(table) == 5
+    assert "k_sf_std" in table.columns
+    assert "k_af" not in table.columns  # no vehicle has it
+
+
+def test_campaigns_of_a_folder_a_list_and_paths(tmp_path: Path) -> None:
+    for name in ("b", "a/deep", ".hidden"):
+        (tmp_path / name).mkdir(parents=True)
+        (tmp_path / name / "campaign.toml").touch()
+    expected = [(tmp_path / name / "campaign.toml").resolve() for name in ("a/deep", "b")]
+    assert list(find_campaigns(tmp_path)) == expected
+    (tmp_path / "list.txt").write_text("# two of them\n\na/deep\nb/campaign.toml\n  b\nmissing\n")
+    found = find_campaigns(tmp_path / "list.txt")
+    assert list(found) == [*expected, (tmp_path / "missing").resolve()]
+    assert list(find_campaigns([tmp_path / "b", tmp_path / "a" / "deep"])) == expected[::-1]
+
+
+def test_a_folder_without_campaigns(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="found no campaign; expected one campaign"):
+        sprung.fleet(tmp_path, tmp_path / "out")
+    with pytest.raises(InputError, match="found no such file or folder"):
+        sprung.fleet(tmp_path / "nowhere", tmp_path / "out")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_key_follows_from_recordings_campaign_and_options(tmp_path: Path) -> None:
+    path = write_car(tmp_path, 1)
+    key = campaign_key(path, {})
+    assert campaign_key(path, {}) == key
+    assert campaign_key(path, {"fall": True}) != key
+    recording = path.parent / "empty_roll_left.csv"
+    content = recording.read_bytes()
+    recording.write_bytes(content.replace(b"1", b"2", 1))
+    assert campaign_key(path, {}) != key
+    recording.unlink()
+    missing = campaign_key(path, {})
+    assert missing != key
+    recording.write_bytes(content)
+    assert campaign_key(path, {}) == key
+    path.write_text(path.read_text() + "\n")
+    assert campaign_key(path, {}) != key
+
+
+def row(number: int, **changes: Any) -> dict[str, Any]:
+    return {"campaign": f"/data/car_{number}/campaign.toml", "date": None, "identification": None, **changes}
+
+
+def test_the_order_of_the_tests() -> None:
+    unordered = [row(10), row(2), row(1)]
+    assert [one["campaign"] for one in in_test_order(unordered)] == [row(n)["campaign"] for n in (1, 2, 10)]
+    dated = [row(1, date="2026-11-03"), row(2, date="2026-10-01")]
+    assert in_test_order(dated) == dated[::-1]
+    assert in_test_order([*dated, row(3)]) == [*dated, row(3)]  # a date is missing: by the paths
+
+
+def test_labels_of_vehicles() -> None:
+    assert label_vehicles([row(1, identification="A"), row(2, identification="B")]) == ("A", "B")
+    assert label_vehicles([row(1, identification="A"), row(2, identification="A")]) == ("car_1", "car_2")
+    assert label_vehicles([row(1)]) == ("car_1",)
+
+
+def test_types_are_names_or_all_vehicles() -> None:
+    """A car that is not weighed, and one that has friction beside it: what is common to most is compared."""
+    campaigns = [simulate(TABLE_1_CAR, drops=DROPS, seed=seed, duration=1.5) for seed in (1, 2)]
+    weighed = {"total_mass": KnownValue(TABLE_1_CAR.total_mass, 5.0)}
+    campaigns += [simulate(TABLE_1_CAR, drops=DROPS, seed=seed, duration=1.5, known=weighed) for seed in (3, 4, 5)]
+    made = []
+    for i, campaign in enumerate(campaigns):
+        result = row_of(sprung.analysis.identify_campaign(replace(campaign, name=f"car {i % 2}"), **OPTIONS))
+        made.append({**result, "status": "done", "campaign": f"/{i}/campaign.toml"})
+    types, small = survey_types(made)
+    assert [one.name for one in types] == ["car 0"]
+    assert small == {"car 1": 2}
+    (one,), none = survey_types(made, one_type=True)
+    assert (one.name, one.estimates.count, none) == ("all vehicles", 5, {})
+    # The scale of the two that were not weighed is that of the others.
+    table = {(row["label"], row["parameter"]): row for row in one.rows()}
+    assert table["0", "k_sf"]["single"] is None
+    assert table["0", "k_sf"]["hierarchical"] == pytest.approx(17000, abs=4 * table["0", "k_sf"]["hierarchical_std"])
+    assert collect_estimates([]) is None
+
+
+def test_the_command(identified: Identified, tmp_path: Path) -> None:
+    folder, fleet = identified
+    shutil.copytree(folder / "out", tmp_path / "out")
+    said = run("fleet", folder / "cars" / "car_1", "-o", tmp_path / "out", "--workers", "1", "--no-fall", "--json")
+    assert said.status == 0
+    assert said.json["campaigns"] == {"done": 1, "failed": 0, "computed": 1}  # other options than above
+    assert len(said.json["gone"]) == 4
+    assert [json.loads(line)["done"] for line in said.err.splitlines()][-1] == 1
+    assert {path.name for path in (tmp_path / "out").iterdir()} >= {"fleet.html", "fleet.json", "rows-00001.parquet"}
+    empty = run("fleet", folder / "cars" / "unreadable", "-o", tmp_path / "other", "--workers", "1")
+    assert empty.status == 2
+    assert "unreadable/campaign.toml: found campaign.toml: line 1" in empty.err
+    assert "expected a campaign that can be identified" in empty.err
+    assert not (tmp_path / "other" / "fleet.html").exists()
+    assert fleet.counts.done == 4

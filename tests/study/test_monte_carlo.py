@@ -1,0 +1,127 @@
+"""Monte Carlo of a planned test: the same campaigns as by hand, resumed, with honest figures."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.stats import binomtest
+
+import sprung
+from command_line import run
+from sprung.batch import read_rows
+from sprung.errors import InputError
+from sprung.study.monte_carlo_summary import accuracy_of, share
+from sprung.uncertainty import KnownValue
+from sprung.vehicle import TABLE_1_CAR
+
+DROPS = ({"wheels": ("fl", "fr")}, {"wheels": ("fl", "rl")})
+TEST: dict[str, Any] = {
+    "drops": DROPS,
+    "duration": 1.5,
+    "model": {"extras": (), "tracks": "shared", "fall": False},
+    "known": {"total_mass": {"std": 5.0}},
+}
+VEHICLE = (
+    "[vehicle]\nname = 'Car'\nwheelbase = 2.76\n[model]\nextras = []\ntracks = 'shared'\n[parameters]\n"
+    + "".join(f"{name} = {value}\n" for name, value in TABLE_1_CAR.parameters.items())
+    + "[known]\ntotal_mass = { value = 1551.8, std = 5 }\n[[drop]]\nwheels = ['fl', 'fr']\n[[drop]]\nwheels = ['fl', 'rl']\n"
+)
+
+
+@pytest.fixture(scope="module")
+def study(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, sprung.study.MonteCarlo]:
+    folder = tmp_path_factory.mktemp("study")
+    return folder, sprung.study.monte_carlo(TABLE_1_CAR, TEST, 8, 2, output=folder)
+
+
+Study = tuple[Path, sprung.study.MonteCarlo]
+
+
+def test_figures_are_those_of_the_estimates(study: Study) -> None:
+    folder, found = study
+    values = np.array(_column(folder, "k_sf"))
+    stds = np.array(_column(folder, "k_sf_std"))
+    one = found.parameters["k_sf"]
+    errors = 100 * (values / 17000 - 1)
+    assert (one.estimated, one.undetermined, one.unit, one.true) == (8, 0, "N/m", 17000)
+    assert one.bias == pytest.approx(errors.mean())
+    assert one.scatter == pytest.approx(errors.std(ddof=1))
+    assert one.bias_std == pytest.approx(errors.std(ddof=1) / np.sqrt(8))
+    assert one.stated == pytest.approx(100 * np.sqrt(np.mean((stds / 17000) ** 2)))
+    inside = np.abs(np.log(values / 17000)) < 1.96 * stds / values
+    assert one.coverage.count == inside.sum()
+    assert found.verdicts["accept"].of == 8
+    assert sum(verdict.count for verdict in found.verdicts.values()) == 8
+
+
+def _column(folder: Path, name: str) -> list[float]:
+    return [row[name] for row in read_rows(folder, (name,))]
+
+
+def test_every_campaign_has_its_own_noise_and_weighing(study: Study) -> None:
+    folder, _ = study
+    masses, springs = (np.array(_column(folder, name)) for name in ("total_mass", "front_ride_frequency"))
+    assert len(set(springs)) == 8
+    assert 1.5 < masses.std(ddof=1) < 11  # 5 kg from eight: 95 % between 3.3 and 10.2
+    assert abs(masses.mean() - TABLE_1_CAR.total_mass) < 4 * 5 / np.sqrt(8)
+
+
+def test_more_campaigns_go_on(study: Study) -> None:
+    folder, found = study
+    more = sprung.study.monte_carlo(TABLE_1_CAR, TEST, 9, 1, output=folder)
+    assert (more.computed, more.counts.done) == (1, 9)
+    fewer = sprung.study.monte_carlo(TABLE_1_CAR, TEST, 8, 1, output=folder)
+    assert (fewer.computed, fewer.document()["parameters"]) == (0, found.document()["parameters"])
+
+
+def test_another_study_in_the_folder_is_refused(study: Study) -> None:
+    folder, _ = study
+    with pytest.raises(InputError, match=r"found rows of a Monte Carlo study .*; expected rows of a Monte Carlo study"):
+        sprung.study.monte_carlo(TABLE_1_CAR, {**TEST, "noise": 0.05}, 8, 1, output=folder)
+
+
+def test_a_test_that_cannot_be_done_is_refused_before_any_campaign(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="simulate: drops"):
+        sprung.study.monte_carlo(TABLE_1_CAR, {"drops": [{"wheels": ("fl",), "load": "sand"}]}, 5, output=tmp_path)
+    with pytest.raises(InputError, match="found 0; expected 1 or more"):
+        sprung.study.monte_carlo(TABLE_1_CAR, n=0)
+    with pytest.raises(InputError, match="found seed; expected other arguments"):
+        sprung.study.monte_carlo(TABLE_1_CAR, {"seed": 3})
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(("count", "of"), [(0, 20), (19, 20), (190, 200), (20, 20)])
+def test_the_interval_of_a_share_is_wilsons(count: int, of: int) -> None:
+    """SciPy's as the independent computation."""
+    expected = binomtest(count, of).proportion_ci(0.95, method="wilson")
+    assert (share(count, of).low, share(count, of).high) == pytest.approx((expected.low, expected.high), abs=1e-12)
+
+
+def test_a_rejected_campaign_has_no_estimates() -> None:
+    rows = [
+        {"verdict": "reject", "k_sf": None, "k_sf_std": None},
+        {"verdict": "doubtful", "k_sf": None, "k_sf_std": None},
+    ]
+    one = accuracy_of("k_sf", 17000.0, rows)
+    assert (one.estimated, one.undetermined, one.bias, one.coverage.of) == (0, 1, None, 0)
+
+
+def test_the_command(tmp_path: Path) -> None:
+    (tmp_path / "car.toml").write_text(VEHICLE)
+    said = run("study", tmp_path / "car.toml", "--campaigns", "3", "-o", tmp_path / "out", "--workers", "1")
+    assert said.status == 0
+    assert "Car: 3 campaigns simulated and identified, 0 failed." in said.out
+    assert "coverage %" in said.out
+    again = run("study", tmp_path / "car.toml", "--campaigns", "3", "-o", tmp_path / "out", "--json")
+    assert again.json["campaigns"] == {"done": 3, "failed": 0, "computed": 0}
+    assert again.json["parameters"]["k_sf"]["true"] == 17000
+
+
+def test_known_values_without_uncertainty_are_the_same_in_all() -> None:
+    known = {"total_mass": KnownValue(TABLE_1_CAR.total_mass)}
+    found = sprung.study.monte_carlo(TABLE_1_CAR, {**TEST, "known": known}, 2, 1)
+    assert found.folder is None
+    assert found.counts.done == 2
