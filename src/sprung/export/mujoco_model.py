@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
@@ -125,7 +126,9 @@ class _Model:
             f"<mujoco model={quoteattr(vehicle.name)}>",
             '<compiler angle="radian" autolimits="true"/>',
             f'<option timestep="{_STEP}" integrator="RK4" gravity="0 0 {-STANDARD_GRAVITY}"><flag contact="disable"/></option>',
+            '<visual><headlight ambient="0.4 0.4 0.4"/></visual>',
             "<worldbody>",
+            '<light pos="0 0 4" dir="0 0 -1" diffuse="0.6 0.6 0.6"/>',
             '<geom name="ground" type="plane" size="10 10 0.1" rgba="0.8 0.8 0.8 1"/>',
             *self._body(),
             *self._further_bodies(),
@@ -148,6 +151,11 @@ class _Model:
     @property
     def _mass(self) -> Array:
         return self.equations.vehicle.matrices(self.equations.load).M
+
+    @cached_property
+    def _rest(self) -> list[float]:
+        """Positions of the joints at rest, as which the places of bodies are meant: the body is level there."""
+        return [float(position) for position in self.equations.rest()]
 
     @property
     def _body_size(self) -> int:
@@ -173,10 +181,10 @@ class _Model:
         product = float(M[pitch, roll] + mass * x * y) if pitch and roll else 0.0
         lift = vehicle.cg_height or 0.5
         yield f'<body name="body" pos="{-vehicle.a if pitch else 0.0:.12g} 0 {lift:.12g}">'
-        yield '<joint name="z_s" type="slide" axis="0 0 1"/>'
+        yield f'<joint name="z_s" type="slide" axis="0 0 1" ref="{self._rest[0]!r}"/>'
         for coordinate, axis in (("theta", "0 1 0"), ("phi", "1 0 0")):
             if coordinate in at:
-                yield f'<joint name="{coordinate}" type="hinge" axis="{axis}"/>'
+                yield f'<joint name="{coordinate}" type="hinge" axis="{axis}" ref="{self._rest[at[coordinate]]!r}"/>'
         inertia = f"{about_x!r} {about_y!r} {max(about_x, about_y)!r} {product!r} 0 0"
         yield f'<inertial pos="{x!r} {y!r} 0" mass="{mass!r}" fullinertia="{inertia}"/>'
         length, width = max(vehicle.wheelbase, 0.5) / 2, self._half_width
@@ -210,7 +218,7 @@ class _Model:
             weight = "" if rising[name] else ' gravcomp="1"'
             title = of_wheel("wheel", wheel) if wheel else f"mass_{name}"
             yield f'<body name="{title}" pos="{x:.12g} {y:.12g} {radius:.6g}"{weight}>'
-            yield f'<joint name="{name}" type="slide" axis="0 0 1"/>'
+            yield f'<joint name="{name}" type="slide" axis="0 0 1" ref="{self._rest[i]!r}"/>'
             yield f'<inertial pos="0 0 0" mass="{mass!r}" diaginertia="1 1 1"/>'
             yield f'<geom {shape} rgba="0.15 0.15 0.15 0.8"/>'
             for sensor in self.sensors:
