@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 import scipy.optimize
-
 from exported_vehicles import CASES, VEHICLES, case
+
 from sprung import export
 from sprung.errors import InputError, Problem
 from sprung.vehicle import EMPTY, TABLE_1_CAR, Item, Load, Vehicle

@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 import scipy.io
+from exported_vehicles import CASES, VEHICLES, case, is_linear
 from hypothesis import given, settings
 from numpy.typing import NDArray
 
-from exported_vehicles import CASES, VEHICLES, case, is_linear
 from sprung import export
 from sprung.errors import InputError
 from sprung.simulation import drive_on_pads

@@ -6,8 +6,8 @@ import os
 import sys
 import traceback
 
-from sprung.cli import exports as exports
 from sprung.cli import batches as batches
+from sprung.cli import exports as exports
 from sprung.cli import identification as identification
 from sprung.cli import recordings as recordings
 from sprung.cli import riding as riding
