@@ -13,7 +13,15 @@ from sprung.vehicle import EMPTY, SCHOOL_BUS, TABLE_1_CAR, Load, Vehicle, Wheel,
 BALLAST = parse_record(Load, {"name": "ballast", "items": [{"mass": 150.0, "position": (-1.0, 0.3, 0.5)}]})
 
 
-@pytest.mark.parametrize("vehicle", [TABLE_1_CAR, SCHOOL_BUS])
+UNEVEN = Vehicle.from_parameters(
+    TABLE_1_CAR.parameters
+    | {"y_s": 0.02, "d_ksf": 500.0, "d_ksr": 0.0, "d_csf": 0.0, "d_csr": -100.0, "d_ktf": 9e3, "d_ktr": -12e3},
+    name="uneven",
+)
+"""Tyres of unlike rates: in the air none of them pulls."""
+
+
+@pytest.mark.parametrize("vehicle", [TABLE_1_CAR, SCHOOL_BUS, UNEVEN])
 def test_hardly_any_force_makes_hardly_any_difference(vehicle: Vehicle) -> None:
     """Through lift-off, flight and landing it is the drop that is known exactly; a wheel that hangs among them."""
     almost = Vehicle.from_parameters(vehicle.parameters | {"r_f": 1 + 1e-9, "r_r": 1 + 1e-9}, name="almost")

@@ -8,7 +8,7 @@ linearly over each step.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -183,6 +183,12 @@ def _models(
     return models, np.array([order.index(load.name) for load in loads])
 
 
+def _tyre_rate(values: Mapping[str, float], wheel: Wheel) -> float:
+    """Return the rate of one tyre, N/m."""
+    _, axle, side, _ = STATIONS[wheel]
+    return values[f"k_t{axle}"] + side * values.get(f"d_kt{axle}", 0.0)
+
+
 def _rest(model: NonlinearModel, values: Array, start: Array, heights: Array, held: Array) -> Array:
     """Return the rest position on blocks under a force, X from the empty vehicle at rest on the ground, shape (coordinate,)."""
     forces, matrices = model.forces, model.linear.matrices(values)
@@ -190,11 +196,12 @@ def _rest(model: NonlinearModel, values: Array, start: Array, heights: Array, he
     G, directions = forces.rows.at(values), forces.directions(values)
     offsets = model.travel_offsets(values)[0]
     layout = layout_of(model.names)
-    tyres = np.array([values[model.names.index(f"k_t{STATIONS[wheel].axle}")] for wheel in layout.wheels])
+    given = dict(zip(model.names, values.tolist(), strict=True))
+    tyres = np.array([_tyre_rate(given, wheel) for wheel in layout.wheels])
     load = -K @ model.sag(values) - held
     load[layout.wheels_at] -= tyres * heights
-    raised = np.zeros(forces.number)
-    raised[-len(heights) :] = heights
+    # Travels of tyres count from where they touch the ground: here, the blocks.
+    raised = forces.weightless * (G[:, layout.wheels_at] @ heights)
     X = start
     for _ in range(_ITERATIONS):
         travel = G @ X - raised + offsets
@@ -265,9 +272,8 @@ class _Driven:
         found: Array = self.drive.forces @ value
         parameters = dict(zip(self.model.names, self.values.tolist(), strict=True))
         for place, wheel in enumerate(self._layout.wheels):
-            _, axle, side, _ = STATIONS[wheel]
-            stiffness = parameters[f"k_t{axle}"] + side * parameters.get(f"d_kt{axle}", 0.0)
-            raised = stiffness * value + parameters.get(f"c_t{axle}", 0.0) * rate
+            damping = parameters.get(f"c_t{STATIONS[wheel].axle}", 0.0)
+            raised = _tyre_rate(parameters, wheel) * value + damping * rate
             found[self._layout.wheels_at.start + place] += self.drive.heights[place] @ raised
         return found
 

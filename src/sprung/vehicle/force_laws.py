@@ -7,8 +7,9 @@ last axis is that of the elements.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -239,6 +240,18 @@ def _ground_derivatives(parameters: Array, given: ElementInput) -> tuple[Array, 
     return force, np.zeros_like(force)
 
 
+def _uneven_ground(side: float, parameters: Array, given: ElementInput) -> ElementForce:
+    mean, uneven, *damping = parameters
+    return _ground(np.stack([mean + side * uneven, *damping]), given)
+
+
+def _uneven_ground_derivatives(side: float, parameters: Array, given: ElementInput) -> tuple[Array, Array]:
+    mean, uneven, *damping = parameters
+    (by_rate, *others), _ = _ground_derivatives(np.stack([mean + side * uneven, *damping]), given)
+    force = np.stack([by_rate, side * by_rate, *others])
+    return force, np.zeros_like(force)
+
+
 FRICTION = ForceLaw("friction", True, _friction, _friction_derivatives)
 """Dry friction with presliding: force F, N, and presliding stiffness s, N/m, after :term:`Dahl <Dahl model>` (Aerospace
 Corporation TOR-0158(3107-18)-1, 1968, exponent one): f' = s x' - (s/F) |x'| f."""
@@ -270,3 +283,10 @@ BUMP_STOP = ForceLaw("bump-stop", False, _bump_stop, _bump_stop_derivatives)
 GROUND = ForceLaw("ground", False, _ground, _ground_derivatives)
 """Unilateral contact of a tyre with the ground: cancels the tension of the linear tyre. Tyre rate, N/m, and tyre damping,
 N s/m, where it is a parameter; the travel is the height of the wheel above that at which its tyre just touches the ground."""
+
+UNEVEN_GROUND: Mapping[float, ForceLaw] = {
+    side: ForceLaw(f"ground {name}", False, partial(_uneven_ground, side), partial(_uneven_ground_derivatives, side))
+    for side, name in ((1.0, "left"), (-1.0, "right"))
+}
+"""The same where tyre rates of both sides differ, by the side, 1 on the left: mean rate, N/m, by how much that of the left tyre
+is above it, N/m, and tyre damping."""

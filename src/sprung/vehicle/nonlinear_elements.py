@@ -21,6 +21,7 @@ from sprung.vehicle.force_laws import (
     PROGRESSIVE,
     REBOUND,
     TYRE_CURVE,
+    UNEVEN_GROUND,
     ForceLaw,
 )
 from sprung.vehicle.kinematics import Row
@@ -144,7 +145,8 @@ def ground_contact_elements(extras: Collection[str] = (), layout: Layout = FULL)
     Parameters
     ----------
     extras
-        Any of `EXTRAS`; with ``tyre-damping`` the tension includes that of the tyre dampers.
+        Any of `EXTRAS`; with ``tyre-damping`` the tension includes that of the tyre dampers, with ``asymmetry`` it is each
+        tyre's own.
     layout
         Which part of a vehicle it is.
 
@@ -152,10 +154,11 @@ def ground_contact_elements(extras: Collection[str] = (), layout: Layout = FULL)
     -------
     tuple of NonlinearElement
     """
-    rates = ("k_t", "c_t")[: 1 + ("tyre-damping" in extras)]
+    uneven = "asymmetry" in extras
+    rates = ("k_t", *(("d_kt",) if uneven else ()), *(("c_t",) if "tyre-damping" in extras else ()))
     return tuple(
         NonlinearElement(
-            GROUND,
+            UNEVEN_GROUND[STATIONS[station].side] if uneven else GROUND,
             tuple(f"{rate}{STATIONS[station].axle}" for rate in rates),
             kinematics.wheel(station),
             origin="weightless",
