@@ -17,12 +17,9 @@ from numpy.typing import NDArray
 from sprung.display import shown
 from sprung.errors import Problem
 from sprung.export.equations import Equations
-from sprung.vehicle import ElementInput, Matrices, NonlinearForces, Rows
+from sprung.vehicle import Matrices, NonlinearForces, Rows, linearise_harmonic
 
 Array = NDArray[np.float64]
-
-_SAMPLES = 4096
-"""Steps of a period."""
 
 
 @shown
@@ -152,20 +149,5 @@ def _travels_at_rest(equations: Equations) -> Array:
 
 def _describing_functions(forces: NonlinearForces, values: Array, rest: Array, amplitude: float, omega: float) -> Array:
     """Return stiffness and damping of each row, N/m and N s/m, shape (2, row)."""
-    angles = 2 * np.pi * np.arange(_SAMPLES + 1)[:, None] / _SAMPLES
-    travels = rest + amplitude * np.sin(angles)
-    speeds = amplitude * omega * np.cos(angles) * np.ones_like(rest)
-    parameters, nothing = forces.parameters(values), np.zeros((_SAMPLES, forces.memories))
-    given = ElementInput(travels[1:], speeds[1:], np.diff(travels, axis=0), nothing)
-    step = forces.evaluate(parameters, given)
-    memory, gain = np.zeros(forces.memories), np.ones(forces.memories)
-    for constant, slope in zip(step.memory, step.memory_by_memory, strict=True):
-        memory, gain = constant + slope * memory, slope * gain
-    # The memory after a period is an affine function of that before it, which gives that of the periodic motion.
-    memory = memory / np.maximum(1.0 - gain, np.finfo(float).eps)
-    memories = nothing.copy()
-    for k, (constant, slope) in enumerate(zip(step.memory, step.memory_by_memory, strict=True)):
-        memories[k], memory = memory, constant + slope * memory
-    force = forces.evaluate(parameters, given._replace(memory=memories)).force
-    mean = [(wave * force).mean(axis=0) for wave in (np.sin(angles[1:]), np.cos(angles[1:]))]
-    return np.asarray(2 / amplitude * np.array([mean[0], mean[1] / omega]))
+    _, (found,) = linearise_harmonic(forces, values, rest[None], np.full((1, len(rest)), amplitude), np.array([omega]))
+    return np.array([found.real, found.imag / omega])

@@ -21,10 +21,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
-from sprung.ride.linearisation import linearise_harmonic
 from sprung.ride.ride_model import RideModel
 from sprung.ride.road_response import NotConvergedError
-from sprung.vehicle import Wheel
+from sprung.vehicle import Wheel, linearise_harmonic
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]

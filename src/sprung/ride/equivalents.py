@@ -10,10 +10,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.ride.linearisation import EquivalentElements
 from sprung.ride.ride_model import RideModel
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import Matrices, parameter_name
+from sprung.vehicle import EquivalentElements, Matrices, parameter_name
 
 Real = NDArray[np.float64]
 

@@ -10,12 +10,11 @@ from numpy.typing import NDArray
 
 from sprung.ride.bench import Plate, PlateTest
 from sprung.ride.equivalents import axle_numbers, half_car_numbers
-from sprung.ride.linearisation import EquivalentElements
 from sprung.ride.options import RideOptions
 from sprung.ride.ride_model import RideModel
 from sprung.ride.road_response import Drive, NotConvergedError, RoadResponse, TravelGuess, guess_of, respond
 from sprung.ride.weighting import frequency_weighting
-from sprung.vehicle import STATIONS
+from sprung.vehicle import STATIONS, EquivalentElements
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]

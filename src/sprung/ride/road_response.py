@@ -13,9 +13,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.ride.linearisation import EquivalentElements, RandomTravel, linearise_random
 from sprung.ride.ride_model import RideModel
 from sprung.ride.road import Road, Tracks, spectral_matrix
+from sprung.vehicle import EquivalentElements, RandomTravel, linearise_random
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]

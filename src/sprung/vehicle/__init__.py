@@ -42,6 +42,12 @@ from sprung.vehicle.layout import (
     parameter_name,
     wheelbase_of,
 )
+from sprung.vehicle.linearisation import (
+    EquivalentElements,
+    RandomTravel,
+    linearise_harmonic,
+    linearise_random,
+)
 from sprung.vehicle.load import EMPTY, Added, Finite, Item, Load, NotNegative, Positive
 from sprung.vehicle.model import LINEAR_LAWS, LinearModel, Matrices, Rows, highest_derivatives, state_matrix
 from sprung.vehicle.nonlinear import NonlinearForces, NonlinearModel
@@ -109,6 +115,7 @@ __all__ = [
     "CurveElements",
     "Element",
     "ElementInput",
+    "EquivalentElements",
     "Finite",
     "ForceLaw",
     "Heights",
@@ -126,6 +133,7 @@ __all__ = [
     "PadInputs",
     "Parameter",
     "Positive",
+    "RandomTravel",
     "Readout",
     "Row",
     "Rows",
@@ -160,6 +168,8 @@ __all__ = [
     "is_of_sensor",
     "layout_of",
     "linear_elements",
+    "linearise_harmonic",
+    "linearise_random",
     "nonlinear_elements",
     "parameter_name",
     "parameter_names",

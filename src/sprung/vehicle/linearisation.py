@@ -18,7 +18,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.vehicle import ElementInput, ForceLaw, NonlinearForces
+from sprung.vehicle.force_laws import ElementInput, ForceLaw
+from sprung.vehicle.nonlinear import NonlinearForces
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -83,7 +84,18 @@ class EquivalentElements:
     memory_rows: NDArray[np.int64]
 
     def dynamic_stiffness(self, omega: Real) -> Complex:
-        """Return the force of each row over its travel at angular frequencies, rad/s; N/m, shape (line, row)."""
+        """Return the force of each row over its travel.
+
+        Parameters
+        ----------
+        omega
+            Angular frequencies, rad/s, shape (line,).
+
+        Returns
+        -------
+        ndarray
+            N/m, shape (line, row).
+        """
         iw = 1j * omega[:, None]
         found = self.stiffness + iw * self.damping
         of_memories = self.sliding * self.memory_gain * iw / (iw + self.cutoff)

@@ -11,10 +11,9 @@ from numpy.typing import NDArray
 
 from sprung.ride import Road, ride_numbers
 from sprung.ride.bench import Plate
-from sprung.ride.linearisation import RandomTravel, linearise_harmonic, linearise_random
 from sprung.ride.ride_model import RideModel
 from sprung.ride.road_response import Drive, respond
-from sprung.vehicle import Vehicle
+from sprung.vehicle import RandomTravel, Vehicle, linearise_harmonic, linearise_random
 
 Real = NDArray[np.float64]
 
