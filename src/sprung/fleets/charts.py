@@ -164,8 +164,9 @@ def chart_vehicles(estimates: FleetEstimates) -> tuple[ControlChart, Population]
     # A vehicle that deviates widens the spread that it is judged by: the suspicious ones are left out to begin with.
     in_control, positions = ~_suspicious(estimates), estimates.positions
     alarms: set[object] | None = None
+    population: Population | None = None
     for _ in range(_ROUNDS):
-        population = fit_population(positions[in_control], estimates.covariances[in_control])
+        population = fit_population(positions[in_control], estimates.covariances[in_control], population)
         limit = largest_component(population.spread + _typical(estimates.covariances), RUN_LENGTH)
         scores = score_vehicles(estimates.positions, estimates.covariances, population, limit, rig_limit, WEIGHT)
         found = {*scores.shifts, *np.flatnonzero(scores.deviating).tolist()}
@@ -186,7 +187,7 @@ def chart_vehicles(estimates: FleetEstimates) -> tuple[ControlChart, Population]
         rig_alarms=tuple(_rig_alarms(estimates, scores, means)),
         offsets=positions - estimates.positions,
     )
-    return chart, fit_population(positions[in_control], estimates.covariances[in_control])
+    return chart, fit_population(positions[in_control], estimates.covariances[in_control], population)
 
 
 def _suspicious(estimates: FleetEstimates) -> NDArray[np.bool_]:

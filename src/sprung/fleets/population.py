@@ -87,7 +87,7 @@ class VehicleEstimates:
         return np.sqrt(np.maximum(np.diagonal(self.covariances, axis1=1, axis2=2), 0.0))
 
 
-def fit_population(positions: Real, covariances: Real) -> Population:
+def fit_population(positions: Real, covariances: Real, start: Population | None = None) -> Population:
     """Fit mean and covariance of a population; correlations between parameters only if the data support them (BIC).
 
     Parameters
@@ -96,16 +96,19 @@ def fit_population(positions: Real, covariances: Real) -> Population:
         Estimates, dimensionless, shape (vehicle, parameter).
     covariances
         Their covariance matrices, positive definite, dimensionless, shape (vehicle, parameter, parameter).
+    start
+        Population of nearly the same vehicles, with which the iteration begins.
 
     Returns
     -------
     Population
     """
     width = positions.shape[1]
-    separate = _fit(positions, covariances, correlated=False)
+    begin = None if start is None else start.spread
+    separate = _fit(positions, covariances, False, begin)
     if len(positions) <= width:
         return separate
-    joint = _fit(positions, covariances, correlated=True)
+    joint = _fit(positions, covariances, True, begin)
     gain = 2 * (joint.loglikelihood - separate.loglikelihood)
     return joint if gain > width * (width - 1) / 2 * np.log(len(positions)) else separate
 
@@ -138,10 +141,11 @@ def estimate_vehicles(positions: Real, covariances: Real, population: Population
     return VehicleEstimates(population.mean + deviations, (covariance + covariance.transpose(0, 2, 1)) / 2)
 
 
-def _fit(positions: Real, covariances: Real, correlated: bool) -> Population:
+def _fit(positions: Real, covariances: Real, correlated: bool, begin: Real | None = None) -> Population:
     """Maximise the restricted likelihood by the EM algorithm."""
     count = len(positions)
-    spread = _start(positions, covariances)
+    spread = _start(positions, covariances) if begin is None else begin
+    spread = spread if correlated else np.diag(np.diag(spread))
     last, iteration = -np.inf, 0
     while True:
         weights = np.asarray(np.linalg.inv(covariances + spread), dtype=float)
