@@ -115,7 +115,8 @@ def identified(path: str) -> tuple[str, dict[str, Any]]:
 
 def agreement(outcomes: Mapping[str, Mapping[str, Any]], name: str) -> tuple[float, float, float, float]:
     """Return mean, largest difference from it in percent, and in standard errors, and the rise from first to last, percent."""
-    values, stds = np.array([one["parameters"][name] for one in outcomes.values()], dtype=float).T
+    usable = [one for one in outcomes.values() if one["verdict"] != "reject"]
+    values, stds = np.array([one["parameters"][name] for one in usable], dtype=float).T
     mean = float(np.sum(values / stds**2) / np.sum(stds**-2.0))
     apart = np.abs(values - mean)
     return mean, 100 * float(apart.max() / mean), float((apart / stds).max()), 100 * float(values[-1] / values[0] - 1)
@@ -145,8 +146,11 @@ def page(outcomes: Mapping[str, Mapping[str, Any]]) -> str:
         ]
         for setting, one in outcomes.items()
     ]
-    sensors = list(next(iter(outcomes.values()))["gains"])
-    gains = [[setting, *(_with_std(*one["gains"][c], 1.0) for c in sensors)] for setting, one in outcomes.items()]
+    sensors = max((list(one["gains"]) for one in outcomes.values()), key=len)
+    gains = [
+        [setting, *(_with_std(*one["gains"].get(c, (None, None)), 1.0) for c in sensors)]
+        for setting, one in outcomes.items()
+    ]
     reasons = "\n".join(f"- {setting}: {'; '.join(one['reasons'])}" for setting, one in outcomes.items())
     drops = sum(one["drops"] for one in outcomes.values())
     return f"""# A real half-car rig
@@ -178,7 +182,8 @@ reads some 9 % less than the left one, so that gains of {100 * GAIN:g} % are all
 
 {table(head, rows)}
 
-After ± one standard error, which contains what the model leaves and how far the lifts disagree. What has to be the same:
+After ± one standard error, which contains what the model leaves and how far the lifts disagree. What has to be the same, over
+the settings that are not rejected:
 
 {table(["", "mean", "farthest from it, %", "in standard errors", "last setting over the first, %", "data sheet"], same)}
 
@@ -198,6 +203,9 @@ Reasons of the verdicts:
 
 - Unsprung masses and tyre rates are known only together with the gain of the wheels' sensors, which no free vibration shows: a
   gain {{math}}`g` with {{math}}`k_t/g` and {{math}}`m_u/g` fits alike. They are stated for sensors that are right within 1 %.
+- The undamped rig (`damped_0`, three series of lifts) is rejected: its wheels move otherwise than the model's, with or
+  without an interconnection.
+- Unsprung masses scatter most, and three or four standard errors in a row are more than chance makes of them.
 - The sheet's masses and rates are not those of the recordings. Its wheel hop, {{math}}`\\sqrt{{(k_t + k_s)/m_u}}`, would be at
   8.7 Hz.
 - Added masses are not used: the folder names them "100" and "200" and does not say of what.
