@@ -17,7 +17,8 @@ from sprung.errors import InputError, Problem
 from sprung.export.file import ExportedFile
 from sprung.export.outputs import identifier
 from sprung.results import Result
-from sprung.vehicle import PARAMETERS, Vehicle
+from sprung.ride import ParameterDistribution
+from sprung.vehicle import EMPTY, PARAMETERS, Vehicle
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -137,19 +138,8 @@ def draws(result: Result, number: int = USUAL_NUMBER, *, seed: int | None = None
         problems += error.problems
     if problems:
         raise InputError(problems)
-    covariance = result.covariance
-    names = tuple(result.parameters)
-    center = np.array([result.parameters[name].value for name in names], dtype=float)
-    at = [names.index(name) for name in covariance.names]
-    is_positive = np.array([PARAMETERS[name].positive for name in covariance.names], dtype=np.bool_)
-    # The derivative of a positive parameter by its logarithm is its value.
-    slopes = np.where(is_positive, center[at], 1.0)
-    steps = _normal(covariance.matrix / np.outer(slopes, slopes), number, np.random.default_rng(seed))
-    values = np.tile(center, (number, 1))
-    with np.errstate(over="ignore"):
-        values[:, at] = np.where(
-            is_positive, center[at] * np.exp(np.where(is_positive, steps, 0.0)), center[at] + steps
-        )
+    distribution = ParameterDistribution.of_result(result, EMPTY)
+    names, values = distribution.names, distribution.draw(number, seed)
     notes = []
     for column, name in enumerate(names):
         negative = values[:, column] < 0
@@ -158,11 +148,3 @@ def draws(result: Result, number: int = USUAL_NUMBER, *, seed: int | None = None
             values[negative, column] = 0.0
     units = tuple(PARAMETERS[name].unit for name in names)
     return Draws(names, units, values, result.name, vehicle.model, dict(result.setup.heights), tuple(notes))
-
-
-def _normal(covariance: Array, number: int, random: np.random.Generator) -> Array:
-    """Return normal draws of zero mean, shape (number, parameter); the covariance may be singular."""
-    # The symmetric square root is unique: neither signs nor order of eigenvectors change the draws.
-    sizes, directions = np.linalg.eigh(covariance)
-    root = (directions * np.sqrt(np.maximum(sizes, 0.0))) @ directions.T
-    return np.asarray(random.standard_normal((number, len(covariance))) @ root)

@@ -1,5 +1,6 @@
 """Ride and inspection numbers of an identified vehicle: transmissibility, roads, comfort, suspension testers, quarter cars."""
 
+from sprung.ride.distribution import ParameterDistribution
 from sprung.ride.options import USUAL_ROADS, USUAL_SPEED, Place, RideOptions
 from sprung.ride.records import RideNumbers, RoadNumbers, Transmissibility
 from sprung.ride.ride_numbers import ride_numbers
@@ -11,6 +12,7 @@ __all__ = [
     "ROAD_CLASSES",
     "USUAL_ROADS",
     "USUAL_SPEED",
+    "ParameterDistribution",
     "Place",
     "RideNumbers",
     "RideOptions",

@@ -118,12 +118,26 @@ class ParameterDistribution:
         logarithmic = _logarithmic(self.names, self.values)
         return np.where(logarithmic, self.values * np.exp(np.where(logarithmic, step, 0.0)), self.values + step)
 
-    def draw(self, number: int, seed: int) -> Real:
-        """Return draws of the parameters, SI, shape (draw, parameter)."""
-        source = np.random.default_rng(seed)
-        size, vectors = np.linalg.eigh(self.covariance)
-        steps = source.standard_normal((number, len(size))) * np.sqrt(np.maximum(size, 0.0)) @ vectors.T
-        return np.array([self.moved(step) for step in steps])
+    def draw(self, number: int, seed: int | None = None) -> Real:
+        """Return draws of the parameters.
+
+        Parameters
+        ----------
+        number
+            Number of draws.
+        seed
+            Of the random numbers; None gives other ones each time.
+
+        Returns
+        -------
+        ndarray
+            SI, shape (draw, parameter).
+        """
+        # The symmetric square root is unique: neither signs nor order of eigenvectors change the draws.
+        sizes, directions = np.linalg.eigh(self.covariance)
+        root = (directions * np.sqrt(np.maximum(sizes, 0.0))) @ directions.T
+        with np.errstate(over="ignore"):
+            return self.moved(np.random.default_rng(seed).standard_normal((number, len(sizes))) @ root)
 
     def spread(self, function: Callable[[Real], Real], value: Real) -> tuple[Real, NDArray[np.bool_]]:
         """Return the standard uncertainties of quantities that follow from the parameters, to first order.
