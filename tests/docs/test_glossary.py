@@ -62,10 +62,9 @@ def test_every_fault_code_is_described() -> None:
     assert sorted((in_source | CONTRACT_CODES) - described) == []
 
 
-@pytest.mark.parametrize("page", sorted(path.name for path in (ROOT / "docs").rglob("*.md")))
+@pytest.mark.parametrize("page", sorted(path.relative_to(ROOT).as_posix() for path in (ROOT / "docs").rglob("*.md")))
 def test_every_term_referred_to_is_defined(page: str) -> None:
-    (path,) = (ROOT / "docs").rglob(page)
-    used = re.findall(r"\{term\}`(?:[^`<]*<)?([^`<>]+)>?`", path.read_text(encoding="utf-8"))
+    used = re.findall(r"\{term\}`(?:[^`<]*<)?([^`<>]+)>?`", (ROOT / page).read_text(encoding="utf-8"))
     assert sorted({term.lower() for term in used} - glossary_terms()) == []
 
 
