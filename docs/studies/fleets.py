@@ -246,7 +246,7 @@ def page(
 ) -> str:
     """Write the page."""
     count, fleets = errors[0]["vehicles"], cases[0]["count"]
-    ratio = np.median([one["single_rmse"] / one["hierarchical_rmse"] for one in errors])
+    ratio = np.median([one["single_rmse"] / one["hierarchical_rmse"] for one in errors if one["hierarchical_rmse"]])
     rows = [
         [
             one["parameter"],
