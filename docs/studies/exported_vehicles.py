@@ -57,7 +57,7 @@ VEHICLES: Mapping[str, Vehicle] = {
     "heavy-axle": _car(n_r=0.8, m_xr=15.0),
     "attached": _car(m_e=180.0, k_e=4e5, c_e=1500.0, x_e=0.2, m_o=150.0, k_o=9e4, c_o=900.0, x_o=-1.2, y_o=0.1),
     "flexible": _car(
-        I_w=150.0, k_w=4e5, c_w=200.0, a_w=0.1, m_v=400.0, k_v=3e6, c_v=2e3, b_v=0.5, p_v=0.02
+        I_w=150.0, k_w=4e5, c_w=200.0, a_w=0.1, u_w=0.05, e_w=-0.02, m_v=400.0, k_v=3e6, c_v=2e3, b_v=0.5, p_v=0.02
     ),
     "heights": TABLE_1_CAR.with_values(cg_height=0.55, wheel_height=0.3),
     "roll-axis": TABLE_1_CAR.with_values(cg_height=0.55, wheel_height=0.3, roll_axis_height=0.2),
@@ -83,6 +83,7 @@ LOADS: Mapping[str, Load] = {
     "air-and-stop": LUGGAGE,
     "progressive": LUGGAGE,
     "tyre-curve": LUGGAGE,
+    "flexible": LUGGAGE,
     "heights": LUGGAGE,
     "seated": SEATED,
 }

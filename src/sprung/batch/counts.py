@@ -108,7 +108,7 @@ class Counter:
         self.done += not failed
         self.report()
 
-    def begin(self) -> None:
+    def start_clock(self) -> None:
         """Note that the first campaign of this run is begun: the rate counts from here."""
         if self._began is None:
             self._began = self._clock()

@@ -112,7 +112,7 @@ def run_batch(
                         if entry is not None and entry.key == task.key and not _again(entry.status, retry):
                             counter.skip(entry.status != DONE)
                             continue
-                        counter.begin()
+                        counter.start_clock()
                         executor.submit(task)
                         under_way.add(task.campaign)
                 if under_way:

@@ -65,7 +65,7 @@ def modulating_function_estimate(
         Parameters, SI, by name; None where the sensors do not observe every coordinate, or no vehicle explains the records.
     """
     wheelbase, layout, names = size.wheelbase, size.layout, models[0].names
-    own_rows = _rows_of_one_order(sensors, names)
+    own_rows = _rows_of_one_order(sensors, names, wheelbase)
     moved = models
     if layout.pitches:
         moved = [model.referred_to_front_axle(wheelbase) for model in models]
@@ -105,12 +105,12 @@ def modulating_function_estimate(
     return values if usable else None
 
 
-def _rows_of_one_order(sensors: Sequence[Sensor], names: Sequence[str]) -> list[Row]:
+def _rows_of_one_order(sensors: Sequence[Sensor], names: Sequence[str], wheelbase: float) -> list[Row]:
     """Return the rows of all sensors that read the same derivative of a displacement as most do, those of others empty.
 
     The equations of motion hold for displacements, velocities and accelerations alike.
     """
-    read = [sensor.rows(names) for sensor in sensors]
+    read = [sensor.rows(names, wheelbase) for sensor in sensors]
     orders = Counter(order for rows in read for order in rows)
     most = max(orders, key=lambda order: orders[order])
     return [rows.get(most, Row({})) for rows in read]

@@ -142,7 +142,7 @@ class Equations:
         """Return the equations of motion of a vehicle with a load."""
         own = _own_elements(vehicle, load)
         names = tuple(vehicle.parameters)
-        added = load.elements(vehicle.heights, names)
+        added = load.elements(vehicle.heights, names, vehicle.wheelbase)
         nonlinear = _nonlinear_elements(vehicle, load)
         tyres = tuple(_tyre(wheel, own, nonlinear) for wheel in vehicle.layout.wheels)
         of_tyres = {name for tyre in tyres for name, _ in (*tyre.stiffness, *tyre.damping)}
@@ -153,7 +153,7 @@ class Equations:
             for element in elements
             if element.coefficient not in of_tyres
         ]
-        model = NonlinearModel.of(own, nonlinear, names, load, vehicle.heights)
+        model = NonlinearModel.of(own, nonlinear, names, load, vehicle.heights, wheelbase=vehicle.wheelbase)
         values = np.array(list(vehicle.parameters.values()))
         empty = _empty_rest(model, values)
         origins = {"empty": empty, "loaded": empty + model.sag(values)}
@@ -215,8 +215,8 @@ class Equations:
     def nonlinear(self) -> NonlinearModel:
         """The same equations as the vehicle room evaluates them, displacements from where the empty vehicle rests."""
         nonlinear = _nonlinear_elements(self.vehicle, self.load)
-        own = _own_elements(self.vehicle, self.load)
-        return NonlinearModel.of(own, nonlinear, self.names, self.load, self.vehicle.heights)
+        own, vehicle = _own_elements(self.vehicle, self.load), self.vehicle
+        return NonlinearModel.of(own, nonlinear, self.names, self.load, vehicle.heights, wheelbase=vehicle.wheelbase)
 
     def rest(self, heights: Sequence[float] | None = None) -> Array:
         """Return the displacements at rest, X, from where the vehicle would be without gravity.

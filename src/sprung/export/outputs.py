@@ -154,4 +154,4 @@ def _sensed(sensor: Sensor, vehicle: Vehicle) -> Output:
     signal = Signal(identifier(f"sensor_{sensor.channel}"), SI_UNITS[sensor.quantity], f"sensor {sensor.channel}")
     if sensor.quantity == "force":
         return Output(signal, tyre=sensor.pad)
-    return Output(signal, sensor.rows(tuple(vehicle.parameters)))
+    return Output(signal, sensor.rows(tuple(vehicle.parameters), vehicle.wheelbase))

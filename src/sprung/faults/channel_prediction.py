@@ -88,7 +88,7 @@ class ChannelPrediction:
     @cached_property
     def _waves(self) -> list[tuple[Complex, Complex, Complex]]:
         """For each decay its poles, what the sensor reads rows of in each mode, and e^{λt}."""
-        order = max(self.sensor.rows(self.candidate.fit.names))
+        order = max(self.sensor.rows(self.candidate.fit.names, self._wheelbase))
         solved = {
             load: np.linalg.eig(self.candidate.models[load].matrices(self.candidate.fit.values).state)
             for load in {decay.load for decay in self.decays}
@@ -100,6 +100,10 @@ class ChannelPrediction:
             amplitudes = right[:n] * (poles**order * np.linalg.solve(right, state.astype(np.complex128)))
             waves.append((poles, amplitudes, np.exp(poles[:, None] * (np.arange(decay.samples) / decay.rate))))
         return waves
+
+    @property
+    def _wheelbase(self) -> float:
+        return wheelbase_of(self.candidate.fit.names, self.candidate.fit.values)
 
     @cached_property
     def stated(self) -> Real:
@@ -134,7 +138,7 @@ class ChannelPrediction:
     def row(self, sensor: Sensor) -> Real:
         """Return the row of the coordinates that a sensor measures, shape (coordinate,)."""
         fit = self.candidate.fit
-        of_sensor: Real = sensor_rows([sensor], fit.names, wheelbase_of(fit.names, fit.values)).at(fit.values)[0]
+        of_sensor: Real = sensor_rows([sensor], fit.names, self._wheelbase).at(fit.values)[0]
         return of_sensor
 
     def residual_of(self, predicted: Real) -> Real:

@@ -190,13 +190,12 @@ def _changes(
 
 def _moved(load: Load, item: int, axis: int, heights: Heights, fit: FitResult) -> Real:
     """Return the change of M per metre that an item is moved; shape (coordinate, coordinate)."""
-    elements, wheelbase = [], wheelbase_of(fit.names, fit.values) if "u_w" in fit.names else 0.0
+    elements, wheelbase = [], wheelbase_of(fit.names, fit.values)
     for side in (-1, 1):
         step = side * _NUDGE
         x, y, z = load.items[item].position or (0.0, 0.0, 0.0)
         place = (x + step * (axis == 0), y + step * (axis == 1), z + step * (axis == 2))
         there = replace(load.items[item], position=place)
-        elements += [
-            replace(element, factor=side * element.factor) for element in there.elements(heights, wheelbase=wheelbase)
-        ]
+        moved = there.elements(heights, names=fit.names, wheelbase=wheelbase)
+        elements += [replace(element, factor=side * element.factor) for element in moved]
     return LinearModel.of(elements, fit.names).matrices(fit.values).M / (2 * _NUDGE)

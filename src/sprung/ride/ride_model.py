@@ -105,10 +105,12 @@ class RideModel:
             *linear_elements(tracks, terms, vehicle.heights, wheelbase, layout),
             *stiffened_air_springs(at_wheels, tracks, terms, wheelbase, layout),
         ]
-        linear = LinearModel.of([*elements, *load.elements(vehicle.heights, names)], names)
+        linear = LinearModel.of([*elements, *load.elements(vehicle.heights, names, wheelbase)], names)
         own_terms = [term for term in terms if term != _TYRE_CURVE]
         laws = nonlinear_elements(tracks, own_terms, wheelbase, at_wheels, layout)
-        nonlinear = NonlinearModel.of(elements, laws, names, load, vehicle.heights) if laws else None
+        nonlinear = (
+            NonlinearModel.of(elements, laws, names, load, vehicle.heights, wheelbase=wheelbase) if laws else None
+        )
         travel = travels(tracks, terms, wheelbase)
         return cls(
             names,
@@ -116,7 +118,7 @@ class RideModel:
             nonlinear,
             PadInputs.of(layout.wheels, (), names),
             Rows.of([travel(wheel, "spring") for wheel in layout.wheels], names),
-            Rows.of([body_point(*place) for place in places], names),
+            Rows.of([body_point(*place, names, wheelbase) for place in places], names),
             vehicle,
             load,
             tracks,

@@ -79,7 +79,7 @@ def push_drive(
     """Return what pushes a vehicle, and the force on its coordinates before that, N, shape (coordinate,)."""
     matrices, values = vehicle.matrices(load), vehicle.parameters
     place = push.position or _middle(vehicle, wheels)
-    point = body_point(*place, vehicle.wheelbase if "u_w" in values else 0.0)
+    point = body_point(*place, tuple(values), vehicle.wheelbase)
     row = Rows.of([point], tuple(values)).at(list(values.values()))[0]
     heave = vehicle.linear_model(load).heave
     weight = float(heave @ matrices.M @ heave) * gravity

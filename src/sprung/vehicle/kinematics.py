@@ -181,15 +181,17 @@ def unconstrained(names: Collection[str]) -> tuple[str, ...]:
     return tuple(coordinate for coordinate in UNCONSTRAINED if free[coordinate])
 
 
-def body_point(x: float, y: float, wheelbase: float = 0.0) -> Row:
+def body_point(x: float, y: float, names: Collection[str] = (), wheelbase: float = 0.0) -> Row:
     """Vertical displacement of a point of the body.
 
     Parameters
     ----------
     x, y
         Position, m: forward of the front axle, left of the centreline. The centre of gravity is at x = -a.
+    names
+        Parameters of the vehicle: with u_w and e_w its body twists unevenly.
     wheelbase
-        Of a body that twists unevenly, m; 0 for one that twists evenly.
+        Of a body that twists unevenly, m.
 
     Returns
     -------
@@ -198,7 +200,7 @@ def body_point(x: float, y: float, wheelbase: float = 0.0) -> Row:
     bent = {"q_w": y / 2, "q_v": -x / 2}
     constant = {"z_s": 1.0, "theta": -x, "phi": y, "q_w": x * y, "q_v": -x * x / 2}
     slopes = {"a": {"theta": -1.0, **bent}, "b": bent}
-    if not wheelbase:
+    if "u_w" not in names:
         return Row(constant, slopes)
     along = 1 + 2 * x / wheelbase
     uneven = y * wheelbase * (1 - along**2)

@@ -78,7 +78,12 @@ class Item:
         return self.on == "seat"
 
     def elements(
-        self, heights: Heights, mass: str | float | None = None, seat: int | None = None, wheelbase: float = 0.0
+        self,
+        heights: Heights,
+        mass: str | float | None = None,
+        seat: int | None = None,
+        names: Collection[str] = (),
+        wheelbase: float = 0.0,
     ) -> Iterator[Element]:
         """Yield the elements of the item.
 
@@ -90,15 +95,15 @@ class Item:
             Name of the parameter that is its mass, or kg; its own mass unless given.
         seat
             Number of the seat on which it moves; as if on the floor unless given.
-        wheelbase
-            Of a body that twists unevenly, m.
+        names, wheelbase
+            Parameters of the vehicle, and its wheelbase, m, where its body twists unevenly.
         """
         mass = self.mass if mass is None else mass
         if self.position is None:
             yield from (Element("mass", mass, kinematics.wheel(wheel)) for wheel in STATIONS if wheel == self.on)
         else:
             x, y, z = self.position
-            floor = kinematics.body_point(x, y, wheelbase)
+            floor = kinematics.body_point(x, y, names, wheelbase)
             if seat is None:
                 yield Element("mass", mass, floor)
             else:
@@ -282,10 +287,9 @@ class Load:
         if self.added is not None:
             name = self._name_of(0, several=False)
             return (*elements, *self.added.elements(name if name in unknown else None))
-        twisting = wheelbase if "u_w" in unknown else 0.0
         for i, item in enumerate(self.items):
             name = self._name_of(i, len(self.items) > 1)
-            elements += item.elements(heights, name if name in unknown else None, seats.get(i), twisting)
+            elements += item.elements(heights, name if name in unknown else None, seats.get(i), unknown, wheelbase)
         return tuple(elements)
 
 

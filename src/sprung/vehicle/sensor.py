@@ -180,7 +180,7 @@ class Sensor:
         if self.on is None or self.position is None:
             found, expected = ("no position", "[x, y, z], m") if self.on else ("no wheel station", "fl, fr, rl or rr")
             raise InputError([Problem(f"sensor '{self.channel}'", found, expected, "State the place of the sensor.")])
-        own = kinematics.body_point(self.position[0], self.position[1], wheelbase if "u_w" in names else 0.0)
+        own = kinematics.body_point(self.position[0], self.position[1], names, wheelbase)
         return own if self.relative_to is None else own - kinematics.wheel(self.relative_to)
 
     @property
