@@ -8,19 +8,12 @@ from collections.abc import Iterator
 from importlib.metadata import version
 from typing import NamedTuple
 
-from markupsafe import Markup
-
 from sprung.checking import Check, DropReport, PlottedRecording
 from sprung.errors import Fault
-from sprung.report.drawing.palette import DARK, LIGHT
 from sprung.report.drawing.picture import Picture
-from sprung.report.drawing.style import role_styles
-from sprung.report.drawing.svg import picture_svg
 from sprung.report.page.environment import ENVIRONMENT
 from sprung.report.pictures.recordings import landing_picture, recording_picture
-from sprung.report.sketch.shapes import Drawing
 from sprung.report.sketch.sketch import vehicle_sketch
-from sprung.report.sketch.svg import sketch_svg
 from sprung.report.terminal.check import channels_table, drops_table, missing_items
 
 CHECK_FILE = "check.html"
@@ -92,21 +85,8 @@ def check_html(check: Check) -> str:
         overview=drops_table(check.drops),
         channels=channels_table(check.drops),
         drops=drops,
-        light=LIGHT,
-        dark=DARK,
-        roles=Markup("\n".join(role_styles())),  # noqa: S704 (made here)
         macros=ENVIRONMENT.get_template("macros.html").module,
-        draw=_draw,
-        draw_sketch=_draw_sketch,
     )
-
-
-def _draw(picture: Picture) -> Markup:
-    return Markup(picture_svg(picture))  # noqa: S704 (escaped there)
-
-
-def _draw_sketch(drawing: Drawing) -> Markup:
-    return Markup(sketch_svg(drawing))  # noqa: S704 (escaped there)
 
 
 def _facts(check: Check) -> Iterator[tuple[str, str]]:

@@ -5,13 +5,8 @@ from __future__ import annotations
 from importlib.metadata import version
 from typing import NamedTuple
 
-from markupsafe import Markup
-
 from sprung.fleets import Fleet, FleetType
-from sprung.report.drawing.palette import DARK, LIGHT
 from sprung.report.drawing.picture import Picture
-from sprung.report.drawing.style import role_styles
-from sprung.report.drawing.svg import picture_svg
 from sprung.report.page.environment import ENVIRONMENT
 from sprung.report.pictures.fleets import fleet_pictures
 from sprung.report.terminal.fleet import alarm_sentences, notes_of, spread_table, summary_of
@@ -74,16 +69,8 @@ def fleet_html(fleet: Fleet) -> str:
         failures=failures[:_MOST_FAILURES],
         unlisted=max(len(failures) - _MOST_FAILURES, 0),
         version=version("sprung"),
-        light=LIGHT,
-        dark=DARK,
-        roles=Markup("\n".join(role_styles())),  # noqa: S704 (made here)
         macros=ENVIRONMENT.get_template("macros.html").module,
-        draw=_draw,
     )
-
-
-def _draw(picture: Picture) -> Markup:
-    return Markup(picture_svg(picture))  # noqa: S704 (escaped there)
 
 
 def _part(number: int, one: FleetType) -> TypePart:

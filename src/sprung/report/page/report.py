@@ -9,9 +9,8 @@ from typing import NamedTuple
 from markupsafe import Markup
 
 from sprung.errors import record_failure
-from sprung.report.drawing.palette import DARK, LIGHT
 from sprung.report.drawing.picture import Picture
-from sprung.report.drawing.style import role_styles, standalone_style
+from sprung.report.drawing.style import standalone_style
 from sprung.report.drawing.svg import picture_svg, reduce_height
 from sprung.report.page import sections
 from sprung.report.page.embedded import figure_json
@@ -80,9 +79,6 @@ def render_report(result: Result, unfolded: bool = False) -> tuple[str, tuple[st
         running_head=_css_text(" · ".join([result.name, *(text for name, text in record if name == "Date")])),
         summary=summary_of(result),
         sections=sections,
-        light=LIGHT,
-        dark=DARK,
-        roles=Markup("\n".join(role_styles())),  # noqa: S704 (made here)
         script=Markup("" if unfolded else _script()),  # noqa: S704 (made here)
     )
     return html, tuple(omissions)
