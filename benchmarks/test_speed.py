@@ -48,6 +48,7 @@ def test_beside_others(benchmark: Any, task: Task) -> None:
             "three starts": (lambda: task.fit(starts=3), 15),
             "lmfit": (lambda: found.update(lmfit=plain.by_lmfit()), 1),
             "identify": (lambda: sprung.identify(task.campaign), 5),
+            "identify, no terms": (lambda: sprung.identify(task.campaign, extras=[]), 5),
         }
     )
     benchmark.pedantic(turns, rounds=7)
@@ -62,7 +63,8 @@ def test_beside_others(benchmark: Any, task: Task) -> None:
     benchmark.extra_info["ratios"] = {
         "plain SciPy fit / whole fit from its own start": turns.ratio("SciPy", "one start", least=100),
         "plain SciPy fit / whole fit from three starts": turns.ratio("SciPy", "three starts"),
-        "plain SciPy fit / sprung.identify": turns.ratio("SciPy", "identify"),
+        "plain SciPy fit / sprung.identify": turns.ratio("SciPy", "identify", least=40),
+        "plain SciPy fit / sprung.identify without model terms": turns.ratio("SciPy", "identify, no terms", least=80),
         "lmfit / whole fit from its own start": turns.ratio("lmfit", "one start"),
         "whole fit from three starts / from one": turns.ratio("three starts", "one start"),
         "sprung.identify / whole fit from its own start": turns.ratio("identify", "one start"),
