@@ -134,7 +134,14 @@ class SteppedMotion:
 
     @cached_property
     def linearised(self) -> tuple[Real, Real, Real]:
-        """The products by window, and what predicts motions nearby: starts and transitions of `differentiate_motions`."""
+        """The products by window, and what predicts motions nearby: starts and transitions of `differentiate_motions`.
+
+        Not finite where the motion is not, as at the start of a fit that diverges.
+        """
+        with np.errstate(over="ignore", invalid="ignore"):
+            return self._linearise()
+
+    def _linearise(self) -> tuple[Real, Real, Real]:
         objective = self.objective
         S, by_S = objective.sensors.at(self.values), objective.sensors.slopes(self.values)
         channels, shared = len(S), objective.sensors.shared

@@ -48,15 +48,20 @@ def differentiate_motions(
         Those of state and memories at the start of each segment, shape (drop, segment, start, unknown).
     transitions
         The end of each segment by its start, shape (drop, segment, start, start).
+
+    Notes
+    -----
+    Not finite where the motion is not.
     """
     number, length = segments_of(len(trajectory.states) - 1, every)
-    motion, given = _cut(stepper, trajectory, number, length)
+    with np.errstate(over="ignore", invalid="ignore"):
+        motion, given = _cut(stepper, trajectory, number, length)
 
     def differentiate(kind: int) -> tuple[Array, Array]:
         own, here = stepper.of_kind(kind), slice(kind, kind + 1)
-        return _differentiate_segments(
-            own, motion[:, here], ElementInput(*(part[:, here] for part in given)), outputs[here], every
-        )
+        inputs = ElementInput(*(part[:, here] for part in given))
+        with np.errstate(over="ignore", invalid="ignore"):  # of this thread
+            return _differentiate_segments(own, motion[:, here], inputs, outputs[here], every)
 
     # No kind waits for another: each may have a processor of its own.
     with ThreadPoolExecutor(len(outputs)) as pool:
