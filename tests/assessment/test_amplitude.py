@@ -107,7 +107,7 @@ def fit_of(bus: sprung.Vehicle) -> FitStatistics:
     square = np.zeros((len(names), len(names)))
     known: dict[str, float] = {}
     return FitStatistics(
-        names, values, values, square, square, nothing, nothing, nothing, 1.0, (), (), known, 0.0, 0, True, 1, 1
+        names, values, values, square, square, nothing, nothing, nothing, 1.0, (), known, 0.0, 0, True, 1, 1
     )
 
 

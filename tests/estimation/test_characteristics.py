@@ -28,7 +28,7 @@ def fit_of(vehicle: Vehicle, relative_covariance: np.ndarray) -> FitStatistics:
     return FitStatistics(
         names=names, values=values, slopes=slopes, relative_covariance=relative_covariance,
         covariance=relative_covariance * np.outer(slopes, slopes), undetermined=np.zeros((len(names), 0)),
-        noise=np.ones(8), residual=np.ones((1, 8)), inflation=1.0, fitted=(), residuals=(), contradictions={},
+        noise=np.ones(8), residual=np.ones((1, 8)), inflation=1.0, residuals=(), contradictions={},
         loglikelihood=0.0, iterations=1, converged=True, starts_agreeing=1, starts=1,
     )  # fmt: skip
 

@@ -34,7 +34,7 @@ class Fit:
         return FitStatistics(
             names=names, values=values, slopes=slopes, relative_covariance=np.diag(variances / slopes**2),
             covariance=np.diag(variances), undetermined=np.zeros((len(names), 0)), noise=nothing, residual=nothing,
-            inflation=1.0, fitted=(), residuals=(), contradictions={}, loglikelihood=0.0, iterations=1, converged=True,
+            inflation=1.0, residuals=(), contradictions={}, loglikelihood=0.0, iterations=1, converged=True,
             starts_agreeing=1, starts=1,
         )  # fmt: skip
 

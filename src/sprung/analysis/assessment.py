@@ -65,7 +65,8 @@ def assess(run: Analysis, progress: Progress) -> Analysis:
     clocks = clock_reports(optimum, fit, decays)
     estimates = to_estimates(fit, structure.known)
     misfit = estimate_model_error(fit.residual_moments, decays)
-    motions = body_motions(statistics, decays, campaign.sensors)
+    fitted = optimum.fitted
+    motions = body_motions(statistics, decays, fitted, campaign.sensors)
     validated = cross_validate_drops(optimum, fit, decays, channels, motions)
     contradicting = sum(any(fault.code in CONTRADICTING for fault in faults) for _, faults in run.prepared.left_out)
     reasons = [fault.what for fault in suspected]
@@ -103,8 +104,8 @@ def assess(run: Analysis, progress: Progress) -> Analysis:
         validation=validated,
         setup=setup,
         series={
-            decay.name: _series(decay, fitted, motion, channels)
-            for decay, fitted, motion in zip(decays, fit.fitted, motions, strict=True)
+            decay.name: _series(decay, modelled, motion, channels)
+            for decay, modelled, motion in zip(decays, fitted, motions, strict=True)
         },
         recordings={drop.name: one for drop, one in zip(looked_at.drops, looked_at.recorded, strict=True)},
     )

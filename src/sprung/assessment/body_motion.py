@@ -87,7 +87,9 @@ class BodyMotion:
         return np.where(there, ratio, np.nan)
 
 
-def body_motions(fit: FitStatistics, decays: Sequence[FreeDecay], sensors: Sequence[Sensor]) -> tuple[BodyMotion, ...]:
+def body_motions(
+    fit: FitStatistics, decays: Sequence[FreeDecay], fitted: Sequence[Real], sensors: Sequence[Sensor]
+) -> tuple[BodyMotion, ...]:
     """Compute the motion of the body from its sensors, measured and simulated.
 
     Parameters
@@ -96,6 +98,8 @@ def body_motions(fit: FitStatistics, decays: Sequence[FreeDecay], sensors: Seque
         The fit.
     decays
         What was fitted.
+    fitted
+        What the model says of them, their means subtracted, m/s²; one array of shape (channel, time) per drop.
     sensors
         The sensors, in the order of the decays' channels.
 
@@ -113,7 +117,7 @@ def body_motions(fit: FitStatistics, decays: Sequence[FreeDecay], sensors: Seque
         for used in {tuple(decay.usable.tolist()) for decay in decays}
     }
     motions = []
-    for decay, fitted in zip(decays, fit.fitted, strict=True):
+    for decay, modelled in zip(decays, fitted, strict=True):
         inverse = inverses[tuple(decay.usable.tolist())]
         centred = np.where(decay.usable[:, None], decay.values - decay.values.mean(axis=1, keepdims=True), 0.0)
         determined = np.abs(inverse @ rows - np.eye(3)).max(axis=1) < _SEEN
@@ -122,7 +126,7 @@ def body_motions(fit: FitStatistics, decays: Sequence[FreeDecay], sensors: Seque
                 name=decay.name,
                 time=decay.start + np.arange(decay.samples) / decay.rate,
                 measured=np.where(determined[:, None], inverse @ centred, np.nan),
-                simulated=np.where(determined[:, None], inverse @ np.nan_to_num(fitted), np.nan),
+                simulated=np.where(determined[:, None], inverse @ np.nan_to_num(modelled), np.nan),
                 noise=np.sqrt(inverse**2 @ noise**2),
                 noise_samples=known_from,
             )

@@ -155,7 +155,7 @@ class ClosedFormAt:
         bias: Real = np.sum([projected.noise_bias_of_information(own) for projected, own in pairs], axis=0)
         return bias
 
-    @cached_property
+    @property
     def fitted(self) -> tuple[Real, ...]:
         """Modelled records, their means subtracted, m/s²; one array of shape (channel, time) per drop."""
         if not self.sums:  # a motion without bounds is no model of anything

@@ -79,7 +79,7 @@ class FitResult:
         noise: Real = np.sqrt(self.problem.noise_variance(self.residual_sums, self.iterate.at))
         return noise
 
-    @cached_property
+    @property
     def fitted(self) -> tuple[Real, ...]:
         """Modelled records, their means subtracted, m/s²; one array of shape (channel, time) per drop."""
         return self.iterate.at.fitted
@@ -87,7 +87,9 @@ class FitResult:
     @cached_property
     def residuals(self) -> tuple[Real, ...]:
         """Measured minus modelled, m/s²: one array of shape (channel, time) per drop, NaN for channels that are left out."""
-        return tuple(_centred(decay.values - record) for decay, record in zip(self.decays, self.fitted, strict=True))
+        # A modelled record is released once its residual is known: all of them would be another copy of the recordings.
+        records = list(self.fitted)
+        return tuple(_centred(decay.values - records.pop(0)) for decay in self.decays)
 
     @property
     def sensor_penalty(self) -> float:

@@ -223,7 +223,8 @@ class JointAt:
     @cached_property
     def fitted(self) -> tuple[Real, ...]:
         """Modelled records, their means subtracted, SI; one array of shape (channel, time) per record."""
-        return tuple(self._of(drop, [part.fitted for part in self.parts]) for drop in range(len(self.objective.decays)))
+        by_part = [part.fitted for part in self.parts]
+        return tuple(self._of(drop, by_part) for drop in range(len(self.objective.decays)))
 
     def _of(self, drop: int, by_part: Sequence[Sequence[Real]]) -> Real:
         part, position = self.objective.place(drop)

@@ -64,10 +64,8 @@ class FitStatistics:
     inflation
         By how much coloured residuals, or drops that contradict each other, have enlarged the variances: a factor, 1
         where neither is significant.
-    fitted
-        Modelled records, their means subtracted, m/s²; one array of shape (channel, time) per drop.
     residuals
-        Measured minus modelled, centred, m/s²; the same, NaN for channels that are left out.
+        Measured minus modelled, centred, m/s²; one array of shape (channel, time) per drop, NaN for channels that are left out.
     contradictions
         For each known quantity by how many standard uncertainties the recordings and everything else that is known would
         rather have another value; not for quantities of which they say nothing.
@@ -94,7 +92,6 @@ class FitStatistics:
     noise: Real
     residual: Real
     inflation: float
-    fitted: tuple[Real, ...]
     residuals: tuple[Real, ...]
     contradictions: Mapping[str, float]
     loglikelihood: float
@@ -225,7 +222,6 @@ def uncertainty_of(fit: FitResult) -> FitStatistics:
         noise=fit.noise,
         residual=fit.residual_sums,
         inflation=inflation,
-        fitted=fit.fitted,
         residuals=fit.residuals,
         contradictions=problem.conflicts(optimum, inflation),
         loglikelihood=fit.loglikelihood,

@@ -122,7 +122,6 @@ class CramerRaoBound:
             noise=setup.noise,
             residual=np.zeros((0, len(setup.noise))),
             inflation=setup.inflation,
-            fitted=(),
             residuals=(),
             contradictions={},
             loglikelihood=0.0,
