@@ -48,7 +48,7 @@ def test_without_noise_identification_returns_what_was_simulated(
         assert result.parameters[name].value == pytest.approx(value, rel=1e-6), name
 
 
-@pytest.mark.parametrize("noise", [0.02, 0.1])
+@pytest.mark.parametrize("noise", [0.02, pytest.param(0.1, marks=pytest.mark.long)])
 @pytest.mark.parametrize(("excitation", "push", "bump"), CASES)
 def test_the_fitted_vehicle_shows_when_its_motion_becomes_free(
     excitation: str, push: str, bump: str, noise: float

@@ -41,7 +41,9 @@ def missed(decay: FreeDecay, truth: Real, vehicle: Vehicle, sure: float) -> tupl
     return off[well] - np.average(off[well], weights=std[well] ** -2), std[well]
 
 
-@pytest.mark.parametrize("rates", [(500.0,) * 8, MANY_RATES], ids=["one rate", "many rates"])
+@pytest.mark.parametrize(
+    "rates", [pytest.param((500.0,) * 8, marks=pytest.mark.long), MANY_RATES], ids=["one rate", "many rates"]
+)
 def test_the_release_tells_the_clocks_as_well_as_it_says(rates: tuple[float, ...]) -> None:
     off: list[float] = []
     std: list[float] = []

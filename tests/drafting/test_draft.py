@@ -227,8 +227,14 @@ def test_two_loggers_of_one_drop_are_put_together(tmp_path: Path, campaign: Camp
 
 @pytest.mark.parametrize(
     "loggers",
-    [tuple("ABCDEFGH"), (*(f"body_{i}" for i in range(1, 5)), "front_left", "front_right", "rear_left", "rear_right")],
-    ids=["letters", "places"],
+    [
+        pytest.param(tuple("ABCDEFGH"), id="letters"),
+        pytest.param(
+            (*(f"body_{i}" for i in range(1, 5)), "front_left", "front_right", "rear_left", "rear_right"),
+            marks=pytest.mark.long,
+            id="places",
+        ),
+    ],
 )
 def test_wireless_loggers_that_all_call_their_channel_z(
     tmp_path: Path, campaign: Campaign, loggers: tuple[str, ...]

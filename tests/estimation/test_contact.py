@@ -13,7 +13,7 @@ from sprung.vehicle import EMPTY, SCHOOL_BUS, TABLE_1_CAR, Vehicle
 HOPPING = Vehicle.from_parameters({**TABLE_1_CAR.parameters, "c_sf": 500.0, "c_sr": 500.0}, name="hopping")
 
 
-@pytest.mark.parametrize("vehicle", [TABLE_1_CAR, SCHOOL_BUS, HOPPING])
+@pytest.mark.parametrize("vehicle", [TABLE_1_CAR, pytest.param(SCHOOL_BUS, marks=pytest.mark.long), HOPPING])
 def test_decays_begin_where_the_last_tyre_last_touches(vehicle: Vehicle) -> None:
     drops = [
         {"wheels": wheels, "height": 0.08}

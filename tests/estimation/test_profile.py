@@ -98,6 +98,7 @@ class LongWay:
         return float(found.fun), found.x
 
 
+@pytest.mark.long
 def test_the_interval_ends_where_a_likelihood_maximised_the_long_way_has_fallen_by_chi_squared() -> None:
     """t_f at 1 m/s² of noise: standard uncertainty 33 %."""
     campaign = drops(seed=0, noise=1.0)

@@ -42,7 +42,7 @@ def test_one_fault_takes_few_fits(name: str, number: int) -> None:
     assert run.result.verdict.state == "accept"
 
 
-@pytest.mark.parametrize("number", [2, 4])
+@pytest.mark.parametrize("number", [pytest.param(2, marks=pytest.mark.long), 4])
 def test_a_low_pass_is_no_delay(number: int) -> None:
     """Shortly after the landing, when the wheels hop, the two differ by far more than by chance."""
     run, (channel,) = analysed("low-pass", number)

@@ -45,7 +45,9 @@ def identified(campaign: sprung.Campaign) -> sprung.Result:
     return sprung.identify(campaign, tracks="shared", extras=(), fall=False)
 
 
-@pytest.mark.parametrize(("channel", "order", "corner"), [("wheel_fr", 1, 40.0), ("wheel_rl", 2, 30.0)])
+@pytest.mark.parametrize(
+    ("channel", "order", "corner"), [pytest.param("wheel_fr", 1, 40.0, marks=pytest.mark.long), ("wheel_rl", 2, 30.0)]
+)
 def test_it_is_named_and_undone(channel: str, order: int, corner: float) -> None:
     """The channel, the order and the corner; no parameter is moved by more than the noise moves it."""
     result = identified(recorded(order, corner, channel))

@@ -33,7 +33,7 @@ def simulated_run_lengths(width: int, limit: float, charts: int, longest: int) -
     return lengths.tolist()
 
 
-@pytest.mark.parametrize("width", [1, 2, 13])
+@pytest.mark.parametrize("width", [1, 2, pytest.param(13, marks=pytest.mark.long)])
 def test_the_run_length_is_that_of_a_simulation(width: int) -> None:
     limit = alarm_limit(width, 50.0)
     assert average_run_length(limit, width) == pytest.approx(50, rel=1e-3)

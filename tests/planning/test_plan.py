@@ -136,7 +136,7 @@ def test_the_sampling_rate_tells_little_where_the_noise_has_a_density() -> None:
         assert percents(weighed(), "1000 Hz")[name] == pytest.approx(percent, rel=0.05)
 
 
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=4, deadline=None)
 @given(vehicles)
 def test_more_never_tells_less(vehicle: Vehicle) -> None:
     plan = sprung.plan(vehicle, known={"total_mass": vehicle.total_mass}, noise=0.1)

@@ -50,7 +50,7 @@ def errors(result: sprung.Result) -> dict[str, float]:
     [
         ({"p_f": 0.06, "p_r": 0.06}, "progressive"),
         ({"n_r": 0.998, "m_xr": 0.0}, "rigid-axle"),
-        ({"F_f": 1.0, "F_r": 1.0, "s_f": 1e6, "s_r": 1e6}, "friction"),
+        pytest.param({"F_f": 1.0, "F_r": 1.0, "s_f": 1e6, "s_r": 1e6}, "friction", marks=pytest.mark.long),
     ],
     ids=["progressive", "rigid-axle", "friction"],
 )

@@ -165,7 +165,7 @@ def integrated(vehicle: Vehicle, load: Load, start: Array, times: Array) -> Arra
 @pytest.mark.parametrize(
     ("vehicle", "load", "wheels", "height"),
     [
-        (TABLE_1_CAR, EMPTY, WHEELS, 0.08),
+        pytest.param(TABLE_1_CAR, EMPTY, WHEELS, 0.08, marks=pytest.mark.long),
         pytest.param(SCHOOL_BUS, EMPTY, ("fl", "rl"), 0.06, marks=pytest.mark.long),
         pytest.param(with_changes(SCHOOL_BUS, **DAMPED_TYRES), EMPTY, WHEELS, 0.06, marks=pytest.mark.long),
         (with_changes(TABLE_1_CAR, c_tf=100.0, c_tr=100.0), SIDEBAG, ("fr",), 0.15),

@@ -77,6 +77,7 @@ def test_poles_are_the_finite_ones_of_the_quadratic_pencil(car: Vehicle) -> None
     assert_allclose(distances.min(axis=1), 0.0, atol=1e-7)
 
 
+@pytest.mark.long
 def test_a_stiff_mount_and_a_branch_of_next_to_nothing_are_none() -> None:
     stiff = TABLE_1_CAR.with_values(k_df=1e10, k_dr=1e10, k_zf=1e-3, k_zr=1e-3)
     ours, plain = (drop_from_blocks(car, wheels=("fl", "rr")).motion(0.002, 400) for car in (stiff, TABLE_1_CAR))
@@ -130,7 +131,10 @@ def test_requested_rubber_is_estimated_within_its_errors(car: Vehicle) -> None:
         assert found.std < 0.05 * value
 
 
-@pytest.mark.parametrize("car", [TABLE_1_CAR, WITH_MOUNTS, WITH_BRANCHES, WITH_BOTH])
+@pytest.mark.parametrize(
+    "car",
+    [TABLE_1_CAR, *(pytest.param(car, marks=pytest.mark.long) for car in (WITH_MOUNTS, WITH_BRANCHES)), WITH_BOTH],
+)
 def test_rubber_is_selected_where_it_is(car: Vehicle) -> None:
     campaign = sprung.simulate(car, loads=[BALLAST], noise=0.02, seed=1)
     assert sprung.identify(campaign).fit.model == car.extras
