@@ -61,6 +61,7 @@ VEHICLES: Mapping[str, Vehicle] = {
     ),
     "heights": TABLE_1_CAR.with_values(cg_height=0.55, wheel_height=0.3),
     "roll-axis": TABLE_1_CAR.with_values(cg_height=0.55, wheel_height=0.3, roll_axis_height=0.2),
+    "rubbing-heights": _car(**_RUBBING).with_values(cg_height=0.55, wheel_height=0.3),
     "weight": _car(w_h=3000.0),
     "separate": Vehicle(
         {
@@ -85,6 +86,7 @@ LOADS: Mapping[str, Load] = {
     "tyre-curve": LUGGAGE,
     "flexible": LUGGAGE,
     "heights": LUGGAGE,
+    "rubbing-heights": LUGGAGE,
     "seated": SEATED,
 }
 """Loads with which some of them are exported; the others are empty."""

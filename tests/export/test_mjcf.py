@@ -19,6 +19,7 @@ mujoco: Any = pytest.importorskip("mujoco")
 LACKING = {
     "friction": "F_f",
     "front-friction": "F_f",
+    "rubbing-heights": "F_f",
     "load-friction": "u_f",
     "rounded": "w_kf",
     "air": "e_f",

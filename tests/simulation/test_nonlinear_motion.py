@@ -21,10 +21,14 @@ UNEVEN = Vehicle.from_parameters(
 """Tyres of unlike rates: in the air none of them pulls."""
 
 
-@pytest.mark.parametrize("vehicle", [TABLE_1_CAR, SCHOOL_BUS, UNEVEN])
+TALL = TABLE_1_CAR.with_values(cg_height=0.75, wheel_height=0.3)
+"""The weight of a load turns it: from where it stood empty."""
+
+
+@pytest.mark.parametrize("vehicle", [TABLE_1_CAR, SCHOOL_BUS, UNEVEN, TALL])
 def test_hardly_any_force_makes_hardly_any_difference(vehicle: Vehicle) -> None:
     """Through lift-off, flight and landing it is the drop that is known exactly; a wheel that hangs among them."""
-    almost = Vehicle.from_parameters(vehicle.parameters | {"r_f": 1 + 1e-9, "r_r": 1 + 1e-9}, name="almost")
+    almost = vehicle.with_values(r_f=1 + 1e-9, r_r=1 + 1e-9)
     cases: list[tuple[Load, tuple[Wheel, ...], float]] = [
         (EMPTY, ("fl", "fr"), 0.05), (BALLAST, ("fl", "rl"), 0.08), (EMPTY, ("fl",), 0.1),
     ]  # fmt: skip
@@ -33,7 +37,7 @@ def test_hardly_any_force_makes_hardly_any_difference(vehicle: Vehicle) -> None:
         exact = drop_from_blocks(vehicle, load, wheels, height, duration=1.3).motion(0.002, 600, 0.001)
         for name in ("displacement", "velocity"):
             found, known = getattr(motion, name), getattr(exact, name)
-            assert np.abs(found - known).max() < 2e-3 * np.abs(known).max()
+            assert np.abs(found - known).max() < 2e-4 * np.abs(known).max(), name
 
 
 def test_friction_and_rebound_against_equations_written_out_elsewhere() -> None:

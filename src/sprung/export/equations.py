@@ -78,13 +78,14 @@ class RowElement(NamedTuple):
         Its law, coefficient and factor.
     row
         Position of its row.
-    is_load
-        Whether it is one of the load.
+    offset
+        Travel of a spring at which it has no force, m or rad: gravity acts on the heights of a load from where the empty
+        vehicle rests, and its seats carry nothing there.
     """
 
     element: Element
     row: int
-    is_load: bool
+    offset: float = 0.0
 
 
 class Tyre(NamedTuple):
@@ -147,15 +148,21 @@ class Equations:
         tyres = tuple(_tyre(wheel, own, nonlinear) for wheel in vehicle.layout.wheels)
         of_tyres = {name for tyre in tyres for name, _ in (*tyre.stiffness, *tyre.damping)}
         known, rows = {*coordinates(names), *_horizontal(own)}, _DistinctRows()
-        linear = [
-            RowElement(element, rows.position(_within(element.row, known)), is_load)
-            for elements, is_load in ((own, False), (added, True))
-            for element in elements
-            if element.coefficient not in of_tyres
-        ]
         model = NonlinearModel.of(own, nonlinear, names, load, vehicle.heights, wheelbase=vehicle.wheelbase)
         values = np.array(list(vehicle.parameters.values()))
-        empty = _empty_rest(model, values)
+        empty = model.empty_sag(values)
+        linear = [
+            RowElement(element, rows.position(_within(element.row, known)))
+            for element in own
+            if element.coefficient not in of_tyres
+        ] + [
+            RowElement(
+                element,
+                rows.position(_within(element.row, known)),
+                float(Rows.of([element.row], names).at(values)[0] @ empty) if element.law == "spring" else 0.0,
+            )
+            for element in added
+        ]
         origins = {"empty": empty, "loaded": empty + model.sag(values)}
         forces = []
         for element in nonlinear:
@@ -240,14 +247,7 @@ class Equations:
     @property
     def empty_rest(self) -> Array:
         """Displacements of the empty vehicle at rest, as its linear elements have them, X, shape (coordinate,)."""
-        return _empty_rest(self.nonlinear, self.values)
-
-
-def _empty_rest(model: NonlinearModel, values: Array) -> Array:
-    # With the springs of the load, which belong to the equations of motion: seats, and its height above the support.
-    loaded = model.linear.matrices(values)
-    empty_mass = loaded.M - model.load.matrices(values).M
-    return -loaded.deflection(empty_mass @ model.linear.heave * model.gravity)
+        return self.nonlinear.empty_sag(self.values)
 
 
 class _DistinctRows:

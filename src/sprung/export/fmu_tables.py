@@ -60,11 +60,11 @@ def model_tables(equations: Equations, outputs: Sequence[Output]) -> Iterable[st
     ]
     yield _table("RowEntry row_entries[]", entries)
     elements = []
-    for element, row, _ in equations.linear:
+    for element, row, offset in equations.linear:
         is_parameter = isinstance(element.coefficient, str)
         factor = element.factor if is_parameter else element.factor * float(element.coefficient)
         parameter = number[str(element.coefficient)] if is_parameter else -1
-        elements.append(f"{{{element.law.upper()}, {row}, {parameter}, {factor!r}}}")
+        elements.append(f"{{{element.law.upper()}, {row}, {parameter}, {factor!r}, {offset!r}}}")
     yield _table("Element elements[]", elements)
     forces = [
         _force(force, number, memories.index(i) if i in memories else -1) for i, force in enumerate(equations.forces)

@@ -205,9 +205,11 @@ def _force(equations: Equations, row: int) -> str:
     """Return the force of everything on a row."""
     rising = equations.weight_factor(row)
     parts = []
-    for element, at, _ in equations.linear:
+    for element, at, offset in equations.linear:
         if at == row:
             motion = {"mass": f"accel{row}", "damper": f"rate{row}", "spring": f"travel{row}"}[element.law]
+            if offset:
+                motion = f"({motion} - ({number(offset)}))"
             if element.law == "mass" and rising:
                 motion = f"({motion} + {product(rising, 'gravity')})"
             coefficient = element.coefficient

@@ -235,17 +235,19 @@ class _Model:
         equations = self.equations
         values = dict(zip(equations.names, equations.values.tolist(), strict=True))
         rates: dict[int, dict[str, float]] = {}
-        for element, row, _ in equations.linear:
+        for element, row, offset in equations.linear:
             if element.law != "mass":
                 coefficient = element.coefficient
                 size = element.factor * (values[coefficient] if isinstance(coefficient, str) else coefficient)
-                own = rates.setdefault(row, {"spring": 0.0, "damper": 0.0})
+                own = rates.setdefault(row, {"spring": 0.0, "damper": 0.0, "preload": 0.0})
                 own[element.law] += size
+                own["preload"] += size * offset
         for force in equations.forces:
-            rates.setdefault(force.row, {"spring": 0.0, "damper": 0.0})
+            rates.setdefault(force.row, {"spring": 0.0, "damper": 0.0, "preload": 0.0})
         for position, own in rates.items():
             friction = sum(values[one.element.parameters[0]] for one in equations.forces if _is_friction(one, position))
-            attributes = f'stiffness="{own["spring"]!r}" damping="{own["damper"]!r}" springlength="0"'
+            unloaded = own["preload"] / own["spring"] if own["spring"] else 0.0
+            attributes = f'stiffness="{own["spring"]!r}" damping="{own["damper"]!r}" springlength="{unloaded!r}"'
             attributes += f' frictionloss="{friction!r}"' if friction else ""
             yield self._tendon(f"row{position}", attributes, self._row(position))
         for i, force in enumerate(equations.forces):

@@ -88,9 +88,12 @@ class Ground:
     def under(cls, vehicle: Vehicle, load: Load, gravity: float, drive: Drive | None = None) -> Ground:
         """Return a vehicle with its load on the ground, flat unless a drive is given; gravity in m/s²."""
         stiffness, damping = np.array(list(tyre_rates(vehicle).values())).T
-        model = vehicle.linear_model(load)
-        matrices = vehicle.matrices(load)
-        sag = matrices.deflection(gravity * matrices.M @ model.heave)
+        heave = vehicle.linear_model(load).heave
+        matrices, empty = vehicle.matrices(load), vehicle.matrices()
+        # The empty vehicle stands level: what a load weighs turns it from there, not what the vehicle weighs itself.
+        sag = empty.deflection(gravity * empty.M @ heave) + matrices.deflection(
+            gravity * (matrices.M - empty.M) @ heave
+        )
         if drive is None:
             drive = Drive.nothing(len(matrices.M), len(stiffness))
         return cls(matrices, stiffness, damping, stiffness * sag[vehicle.layout.wheels_at], vehicle.layout, drive)

@@ -13,7 +13,7 @@ enum { FRICTION, LOAD_FRICTION, REBOUND, DAMPER_CURVE, PROGRESSIVE, AIR, BUMP_ST
 
 /* A parameter is given by its number; -1 stands for none, and as a factor for 1. */
 typedef struct { int row, coordinate, parameter; double value; } RowEntry;
-typedef struct { int law, row, parameter; double factor; } Element;
+typedef struct { int law, row, parameter; double factor, offset; } Element;
 typedef struct { int law, row, count, parameters[12], has_ratio, is_rounded, memory; double offset, weight; } Force;
 typedef struct { int coordinate, stiffness, difference, damping, growth; double side; } Tyre;
 typedef struct { int output, order, coordinate, parameter; double value; } OutputEntry;
@@ -90,6 +90,8 @@ static int assemble(Vehicle *vehicle) {
         double size = one->factor * value(vehicle, one->parameter);
         for (int i = 0; i < N_ALL; i++)
             for (int j = 0; j < N_ALL; j++) A[i][j] += size * g[i] * g[j];
+        if (one->law == SPRING)
+            for (int i = 0; i < N_ALL; i++) vehicle->weight[i] -= size * one->offset * g[i];
     }
     for (int i = 0; i < N_ALL; i++)
         for (int j = 0; j < N_FORCED; j++) vehicle->weight[i] += GRAVITY * vehicle->M[i][j] * heave[j];
