@@ -18,6 +18,7 @@ from marks import all_the_others_are_long
 from sprung import export
 from sprung.export.functional_mockup import _built
 from sprung.simulation import Bump, drive_over_bump
+from sprung.simulation.excitation import bump_arcs
 from sprung.vehicle import EMPTY, TABLE_1_CAR, Readout, Sensor
 
 fmpy = pytest.importorskip("fmpy")
@@ -85,7 +86,7 @@ def test_a_road_is_followed_with_its_rate(tmp_path: Path) -> None:
     vehicle, _ = case("tyre-damping")
     bump = Bump(height=0.02, length=1.0)
     speed, step = 5.0, 1e-3
-    arcs = bump.arcs(speed)
+    arcs = bump_arcs(bump, speed)
     times: NDArray[np.float64] = np.asarray(np.arange(1000) * step)
     delays = {"fl": 0.0, "fr": 0.0, "rl": vehicle.wheelbase / speed, "rr": vehicle.wheelbase / speed}
     passage = arcs[1].start

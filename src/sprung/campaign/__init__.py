@@ -13,6 +13,7 @@ from sprung.campaign.drop import (
     unique_drop_names,
     unique_recording_names,
 )
+from sprung.campaign.excitation import Bump, Push
 from sprung.campaign.gap_filling import MAX_MISSING, fill_short_gaps
 from sprung.campaign.known_values import KnownValueLike, parse_known_values
 from sprung.campaign.logger_files import find_logger_files
@@ -35,6 +36,7 @@ __all__ = [
     "MAX_MISSING",
     "SCHEMA_FILE",
     "SCHEMA_LINE",
+    "Bump",
     "Campaign",
     "CampaignSource",
     "Drop",
@@ -44,6 +46,7 @@ __all__ = [
     "LoggerClock",
     "MissingEntry",
     "ModelChoice",
+    "Push",
     "Recording",
     "SourceFile",
     "TestRecord",

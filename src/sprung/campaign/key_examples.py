@@ -109,6 +109,19 @@ KEYS: Mapping[str, Mapping[str, Key]] = {
         "start": Key(1.32, "s"),
         "end": Key(4.0, "s"),
     },
+    "Push": {
+        "shape": Key("rope"),
+        "force": Key(900.0, "N"),
+        "count": Key(6),
+        "frequency": Key(1.3, "Hz"),
+        "position": Key([-3.4, 0.0], "m"),
+    },
+    "Bump": {
+        "shape": Key("plank"),
+        "height": Key(0.04, "m"),
+        "length": Key(0.3, "m"),
+        "edge": Key(0.1, "m"),
+    },
 }
 """By the model of the section, the file itself under an empty name."""
 
@@ -122,7 +135,7 @@ def annotate(document: dict[str, Any]) -> None:
         The schema; changed in place.
     """
     for model, own in KEYS.items():
-        properties = _properties(document["$defs"][model] if model else document)
+        properties = _properties(document["$defs"].get(model, {}) if model else document)
         for name, key in own.items():
             if name in properties:
                 properties[name] |= {EXAMPLES: [key.example]} | ({UNIT: key.unit} if key.unit else {})

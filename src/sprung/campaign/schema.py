@@ -8,6 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from sprung.campaign.campaign import ModelChoice, TestRecord
 from sprung.campaign.drop import Drop
+from sprung.campaign.excitation import Bump, Push
 from sprung.campaign.schema_file import SCHEMA
 from sprung.uncertainty import KnownValue
 from sprung.vehicle import (
@@ -129,3 +130,7 @@ class VehicleFileSchema(CampaignFile):
 
     parameters: Mapping[str, Finite] = Field(default_factory=dict)
     """By the names of `sprung.vehicle.PARAMETERS`, SI."""
+    push: Push = Push()
+    """How the body is pushed in every push."""
+    bump: Bump = Bump()
+    """What is driven over in every pass."""

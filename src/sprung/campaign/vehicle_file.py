@@ -10,6 +10,7 @@ from sprung.campaign.campaign import ModelChoice, TestRecord
 from sprung.campaign.checks import check
 from sprung.campaign.completeness import find_missing_entries
 from sprung.campaign.drop import Drop
+from sprung.campaign.excitation import Bump, Push
 from sprung.campaign.file_reading import stated_loads
 from sprung.campaign.parsing import ParsedFile, parse_document
 from sprung.campaign.schema import VehicleFileSchema
@@ -39,6 +40,8 @@ class VehicleFile:
         As in a `Campaign`: what the simulated campaign may say about itself.
     path
         Where the file is.
+    push, bump
+        How the body is pushed in every push, and what is driven over in every pass.
     """
 
     vehicle: Vehicle
@@ -54,6 +57,8 @@ class VehicleFile:
     identification: str | None = None
     test: TestRecord = field(default_factory=TestRecord)
     motion_ratio: Mapping[str, KnownValue] = field(default_factory=dict)
+    push: Push = field(default_factory=Push)
+    bump: Bump = field(default_factory=Bump)
 
     @property
     def all_known(self) -> dict[str, KnownValue]:
@@ -88,6 +93,8 @@ def read_vehicle_file(path: Path) -> VehicleFile:
         identification=section.identification,
         test=parsed.file.test,
         motion_ratio=section.motion_ratio.known,
+        push=parsed.file.push,
+        bump=parsed.file.bump,
     )
 
 

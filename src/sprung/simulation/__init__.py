@@ -1,12 +1,12 @@
 """Campaigns from a vehicle: drops from blocks, pushes, passes over a bump and free decays, measured with real sensors."""
 
+from sprung.campaign import Bump, Push
 from sprung.simulation.acting import Acting, Excited
 from sprung.simulation.arguments import default_drops, default_sensors
 from sprung.simulation.bump_passage import half_sine_bumps
 from sprung.simulation.contact_motion import DropMotion
 from sprung.simulation.decay_campaign import free_decays
 from sprung.simulation.drops import simulate
-from sprung.simulation.excitation import Bump, Push
 from sprung.simulation.excited_motion import DEFAULT_SPEED, drive_over_bump, push_body
 from sprung.simulation.ground import static_wheel_loads, tyre_rates
 from sprung.simulation.half_sine_bump import drive_over_half_sine_bump

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from typing import NamedTuple, Protocol
 
-from sprung.campaign import DEFAULT_HEIGHT, Excitation
+from sprung.campaign import DEFAULT_HEIGHT, Bump, Excitation, Push
 from sprung.simulation.contact_motion import DropMotion
-from sprung.simulation.excitation import Bump, Push
 from sprung.simulation.excited_motion import DEFAULT_SPEED, bump_drive, drive_over_bump, push_body, push_drive
 from sprung.simulation.linear_drop import drop_from_blocks
 from sprung.simulation.nonlinear_motion import BlockSupport, DrivenStart

@@ -10,12 +10,20 @@ from typing import Any
 
 import numpy as np
 
-from sprung.campaign import DEFAULT_HEIGHT, Campaign, Drop, KnownValueLike, ModelChoice, read_vehicle
+from sprung.campaign import (
+    DEFAULT_HEIGHT,
+    Bump,
+    Campaign,
+    Drop,
+    KnownValueLike,
+    ModelChoice,
+    Push,
+    read_vehicle,
+)
 from sprung.errors import Problems
 from sprung.progress import Progress, Step, counted, silent
 from sprung.simulation.acting import Acting
 from sprung.simulation.arguments import has_pads, record
-from sprung.simulation.excitation import Bump, Push
 from sprung.simulation.nonlinear_motion import simulate_nonlinear_drops
 from sprung.simulation.pads import PadMotion, drive_on_pads
 from sprung.simulation.setup import SimulationSetup, check_not_negative
@@ -61,7 +69,8 @@ def simulate(
         without a height is one from 0.05 m. The wheels of a push are those between which the body is pushed, those of a pass
         run over the bump, at 5 m/s where it has no speed.
     push, bump
-        How the body is pushed in every push, and what is driven over in every pass; by hand and a half sine unless given.
+        How the body is pushed in every push, and what is driven over in every pass; by hand and a half sine unless given
+        or stated in the file.
     rate
         Samples per second.
     noise
@@ -114,6 +123,8 @@ def simulate(
         drops = file.drops or None if drops is None else drops
         known = file.all_known if known is None else known
         model = file.model if model is None else model
+        push = file.push if push is None else push
+        bump = file.bump if bump is None else bump
     problems = Problems()
     setup = SimulationSetup.of(
         vehicle,

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Annotated, Literal, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field
 
-from sprung.vehicle import Positive, checked_record
+from sprung.campaign import Bump, Push
 
 Array = NDArray[np.float64]
 
@@ -47,73 +46,48 @@ Arcs = Sequence[Arc]
 """Arcs one after the other; zero before the first one."""
 
 
-@checked_record
-class Bump:
-    """What a vehicle drives over, the same under every wheel that runs over it."""
+def bump_arcs(bump: Bump, speed: float, start: float = 0.0) -> tuple[Arc, ...]:
+    """Return the height of the ground under a wheel that runs over a bump.
 
-    shape: Literal["half-sine", "plank", "kerb"] = "half-sine"
-    """A half sine; a plank, onto which and off which the tyre rolls; or a kerb onto a level that stays."""
-    height: Positive = 0.05
-    """m."""
-    length: Positive = 0.5
-    """Of the half sine, or of the plank between its edges, m."""
-    edge: Positive = 0.15
-    """Way on which a tyre rolls onto a plank or a kerb or off it, m: half a period of a cosine."""
-
-    def arcs(self, speed: float, start: float = 0.0) -> tuple[Arc, ...]:
-        """Return the height of the ground under a wheel.
-
-        Parameters
-        ----------
-        speed
-            m/s.
-        start
-            When the wheel reaches the bump, s.
-        """
-        half, edge = self.height / 2, self.edge / speed
-        if self.shape == "half-sine":
-            passage = self.length / speed
-            return Arc(start, 0.0, self.height, math.pi / passage), Arc(start + passage)
-        up = Arc(start, half, half, math.pi / edge, -math.pi / 2), Arc(start + edge, self.height)
-        if self.shape == "kerb":
-            return up
-        end = start + edge + self.length / speed
-        return (*up, Arc(end, half, half, math.pi / edge, math.pi / 2), Arc(end + edge))
+    Parameters
+    ----------
+    bump
+        What it runs over.
+    speed
+        m/s.
+    start
+        When the wheel reaches the bump, s.
+    """
+    half, edge = bump.height / 2, bump.edge / speed
+    if bump.shape == "half-sine":
+        passage = bump.length / speed
+        return Arc(start, 0.0, bump.height, math.pi / passage), Arc(start + passage)
+    up = Arc(start, half, half, math.pi / edge, -math.pi / 2), Arc(start + edge, bump.height)
+    if bump.shape == "kerb":
+        return up
+    end = start + edge + bump.length / speed
+    return (*up, Arc(end, half, half, math.pi / edge, math.pi / 2), Arc(end + edge))
 
 
-@checked_record
-class Push:
-    """How the body is pushed or pulled before it is let go."""
+def push_arcs(push: Push, force: float, frequency: float) -> tuple[Arc, ...]:
+    """Return the upward force on the body that is pushed, from the beginning of the motion on.
 
-    shape: Literal["hand", "rope", "lift"] = "hand"
-    """Pushed down some times by hand; pulled down by a rope that is then released; or lifted and let go."""
-    force: Positive | None = None
-    """N; by hand 5 % of the vehicle's weight unless given, 10 % otherwise."""
-    count: Annotated[int, Field(ge=1)] = 4
-    """How many times it is pushed by hand."""
-    frequency: Positive | None = None
-    """Pushes per second; unless given about the natural frequency with which the place moves that is pushed."""
-    position: tuple[float, float] | None = None
-    """Place of the force on the body, m: forward of the front axle, left of the centreline; unless given in the middle
-    between the wheels that are named."""
-
-    def arcs(self, force: float, frequency: float) -> tuple[Arc, ...]:
-        """Return the upward force on the body from the beginning of the motion on.
-
-        Parameters
-        ----------
-        force
-            N.
-        frequency
-            Pushes per second, each a half sine in half the time.
-        """
-        if self.shape != "hand":
-            return (Arc(0.0),)
-        pushes = []
-        for number in range(self.count):
-            begin = number / frequency
-            pushes += [Arc(begin, 0.0, -force, 2 * math.pi * frequency), Arc(begin + 0.5 / frequency)]
-        return tuple(pushes)
+    Parameters
+    ----------
+    push
+        How it is pushed.
+    force
+        N.
+    frequency
+        Pushes per second, each a half sine in half the time.
+    """
+    if push.shape != "hand":
+        return (Arc(0.0),)
+    pushes = []
+    for number in range(push.count):
+        begin = number / frequency
+        pushes += [Arc(begin, 0.0, -force, 2 * math.pi * frequency), Arc(begin + 0.5 / frequency)]
+    return tuple(pushes)
 
 
 class Drive(NamedTuple):

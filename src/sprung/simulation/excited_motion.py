@@ -7,9 +7,10 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.campaign import Bump, Push
 from sprung.errors import Problems, did_you_mean
 from sprung.simulation.contact_motion import DropMotion, follow_motion
-from sprung.simulation.excitation import Bump, Drive, Push
+from sprung.simulation.excitation import Drive, bump_arcs, push_arcs
 from sprung.simulation.ground import Ground
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import EMPTY, STATIONS, Load, Matrices, Rows, Vehicle, Wheel, body_point, parameter_name
@@ -84,7 +85,7 @@ def push_drive(
     heave = vehicle.linear_model(load).heave
     weight = float(heave @ matrices.M @ heave) * gravity
     force = push.force or (_BY_HAND if push.shape == "hand" else _BY_ROPE) * weight
-    signal = push.arcs(force, push.frequency or _natural_frequency(matrices, row))
+    signal = push_arcs(push, force, push.frequency or _natural_frequency(matrices, row))
     upward = {"hand": 0.0, "rope": -1.0, "lift": 1.0}[push.shape] * force
     return Drive((signal,), row[:, None], np.zeros((len(vehicle.layout.wheels), 1))), upward * row
 
@@ -145,7 +146,7 @@ def bump_drive(vehicle: Vehicle, wheels: tuple[Wheel, ...], speed: float, bump: 
     stations = vehicle.layout.wheels
     axles = dict.fromkeys(STATIONS[wheel].axle for wheel in stations if wheel in wheels)
     first = next(iter(axles), "")
-    signals = [bump.arcs(speed, 0.0 if axle == first else vehicle.wheelbase / speed) for axle in axles]
+    signals = [bump_arcs(bump, speed, 0.0 if axle == first else vehicle.wheelbase / speed) for axle in axles]
     heights = [[float(wheel in wheels and STATIONS[wheel].axle == axle) for axle in axles] for wheel in stations]
     return Drive(tuple(signals), np.zeros((vehicle.linear_model().size, len(axles))), np.array(heights))
 

@@ -202,7 +202,8 @@ def _resolved(vehicle: Vehicle | str | os.PathLike[str], test: Mapping[str, Any]
         file = read_vehicle(vehicle)
         vehicle = file.vehicle
         stated = {"sensors": file.sensors, "loads": file.loads, "drops": file.drops, "known": file.all_known}
-        arguments = {**{name: value for name, value in stated.items() if value}, "model": file.model, **arguments}
+        whole = {"model": file.model, "push": file.push, "bump": file.bump}
+        arguments = {**{name: value for name, value in stated.items() if value}, **whole, **arguments}
     # Sensors that are stated are known to their standard uncertainties, as `sprung.plan` takes them.
     arguments.setdefault("sensor_errors", "sensors" in arguments)
     unknown = {"seed", "progress"} & arguments.keys()

@@ -37,7 +37,7 @@ from sprung.planning import (
 )
 from sprung.progress import Progress, Step, silent
 from sprung.selection import TERMS, choose_structure, required_gain
-from sprung.simulation import SimulationSetup
+from sprung.simulation import Acting, SimulationSetup
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import Load, Sensor, Vehicle
 
@@ -105,6 +105,7 @@ def plan(
                 problems.add(f"plan: {name}", found, "nothing, because a campaign has its own", do)
         problems.raise_if_any()
         return _plan_further(resolve_campaign(source, progress), wanted, terms, progress)
+    acting = Acting()
     if isinstance(source, Vehicle):
         vehicle = source
     else:
@@ -115,6 +116,7 @@ def plan(
         drops = file.drops or None if drops is None else drops
         known = file.all_known if known is None else known
         model = file.model if model is None else model
+        acting = Acting(file.push, file.bump)
     rate = RATE if rate is None else rate
     noise = NOISE if noise is None else noise
     duration = DURATION if duration is None else duration
@@ -166,7 +168,15 @@ def plan(
         own if setup.model.extras is None else None,
     )
     measurement = MeasurementSetup(
-        vehicle, choice.tracks, choice.terms, choice.known, choice.sensors, levels, rate, duration
+        vehicle,
+        choice.tracks,
+        choice.terms,
+        choice.known,
+        choice.sensors,
+        levels,
+        rate,
+        duration,
+        acting=acting,
     )
     loaded = {load.name: load for load in setup.loads}
     planned = tuple(PlannedDrop.of(drop, loaded[drop.load]) for drop in setup.drops)
