@@ -19,6 +19,7 @@ from sprung.report.page.check import CHECK_FILE, check_html
 from sprung.report.page.fleet import FLEET_FILE, fleet_html
 from sprung.report.page.pdf import pdf_of
 from sprung.report.page.report import render_report, report_html
+from sprung.report.page.style import page_style
 from sprung.report.pictures.amplitudes import amplitude_pictures
 from sprung.report.pictures.channels import channels_picture
 from sprung.report.pictures.curves import curve_pictures
@@ -89,6 +90,7 @@ __all__ = [
     "modes_view",
     "monte_carlo_view",
     "motion_picture",
+    "page_style",
     "paper_view",
     "parameters_picture",
     "pdf_of",
