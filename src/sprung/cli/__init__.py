@@ -9,6 +9,7 @@ import traceback
 from sprung.cli import batches as batches
 from sprung.cli import exports as exports
 from sprung.cli import identification as identification
+from sprung.cli import page as page
 from sprung.cli import recordings as recordings
 from sprung.cli import riding as riding
 from sprung.cli import studies as studies

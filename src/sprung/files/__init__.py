@@ -2,8 +2,12 @@
 
 from sprung.files.atomic_write import atomic_write
 from sprung.files.ownership import overwriting_problems
+from sprung.files.recovery import new_token, recover, temporary_path
 
 __all__ = [
     "atomic_write",
+    "new_token",
     "overwriting_problems",
+    "recover",
+    "temporary_path",
 ]

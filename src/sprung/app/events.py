@@ -1,0 +1,68 @@
+"""Server-sent events: the state of every job that changes, for pages that are open."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import secrets
+from collections.abc import AsyncIterator
+
+from starlette.requests import Request
+from starlette.responses import Response, StreamingResponse
+from starlette.routing import Route
+
+from sprung.app.jobs import Jobs
+
+OPEN = 50
+"""Most streams that are open at the same time: a browser opens one for each tab."""
+
+_QUIET = 10.0
+"""Time after which a comment is sent that keeps the connection, s."""
+
+_SHORTEST = 0.1
+"""Least time between two events of a stream, s: a fit reports many steps."""
+
+_RUN = secrets.token_hex(4)
+"""This server: the numbers of changes of an earlier one mean nothing to it."""
+
+
+async def events(request: Request) -> Response:
+    """Answer with a stream of states; one that was interrupted goes on after its Last-Event-ID."""
+    state = request.app.state
+    if state.streams >= OPEN:
+        return Response(f"{OPEN} pages follow the jobs already.", 503, {"Retry-After": "5"})
+    run, _, number = request.headers.get("last-event-id", "").partition("-")
+    last = int(number) if run == _RUN and number.isdigit() and len(number) < 16 else 0  # noqa: PLR2004
+
+    async def stream() -> AsyncIterator[str]:
+        state.streams += 1
+        try:
+            async for text in _states(state.jobs, last):
+                yield text
+        finally:
+            state.streams -= 1
+
+    return StreamingResponse(stream(), media_type="text/event-stream")
+
+
+async def _states(jobs: Jobs, last: int) -> AsyncIterator[str]:
+    """Yield an event for every changed job, until the server stops."""
+    loop, changed = asyncio.get_running_loop(), asyncio.Event()
+    end = jobs.listen(lambda: loop.call_soon_threadsafe(changed.set))
+    try:
+        yield "retry: 1000\n\n"
+        while not jobs.is_closing:
+            changed.clear()
+            for job in jobs.changed_since(last):
+                last = job.change
+                yield f"id: {_RUN}-{last}\nevent: job\ndata: {json.dumps(job.document())}\n\n"
+            await asyncio.sleep(_SHORTEST)
+            try:
+                await asyncio.wait_for(changed.wait(), _QUIET)
+            except TimeoutError:
+                yield ": still here\n\n"
+    finally:
+        end()
+
+
+routes = (Route("/events", events),)
