@@ -3,6 +3,7 @@
 from sprung.campaign.campaign import Campaign, ModelChoice, TestRecord
 from sprung.campaign.campaign_source import CampaignSource, resolve_campaign
 from sprung.campaign.completeness import MissingEntry
+from sprung.campaign.document_check import CheckedDocument, check_document
 from sprung.campaign.drop import (
     DEFAULT_HEIGHT,
     DROP_KINDS,
@@ -37,6 +38,7 @@ __all__ = [
     "SCHEMA_LINE",
     "Campaign",
     "CampaignSource",
+    "CheckedDocument",
     "Drop",
     "DropTest",
     "Excitation",
@@ -48,6 +50,7 @@ __all__ = [
     "SourceFile",
     "TestRecord",
     "campaign_files",
+    "check_document",
     "check_statements",
     "drop_kind",
     "explain_implausible",
