@@ -8,6 +8,7 @@ resolve to 127.0.0.1 has its own Host, and a cookie with SameSite=Strict is not 
 
 from __future__ import annotations
 
+import asyncio
 import hmac
 import secrets
 from collections.abc import Iterable, Mapping
@@ -15,16 +16,22 @@ from typing import TYPE_CHECKING
 from urllib.parse import parse_qs
 
 if TYPE_CHECKING:
-    from starlette.types import ASGIApp, Receive, Scope, Send
+    from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-PAGE_POLICY = "default-src 'self'; img-src 'self' data: blob:; base-uri 'none'; form-action 'self'; frame-ancestors 'self'; object-src 'none'"
+PAGE_POLICY = (
+    "default-src 'self'; img-src 'self' data: blob:; object-src 'none'; "
+    "base-uri 'none'; form-action 'self'; frame-ancestors 'self'"
+)
 """Content-Security-Policy of the app's own pages: no inline script or style, nothing from elsewhere."""
 
 REPORT_POLICY = (
     "sandbox allow-scripts allow-downloads; default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; "
     "img-src data: blob:; font-src data:; frame-ancestors 'self'"
 )
-"""Content-Security-Policy of files from the folder, such as reports: they run as a site of their own that can request nothing."""
+"""Content-Security-Policy of files from the folder, such as reports: each is a site of its own that can request nothing."""
+
+BODY_PAUSE = 30.0
+"""Longest time without a byte of a body, s."""
 
 _HEADERS = {
     b"content-security-policy": PAGE_POLICY.encode(),
@@ -39,7 +46,7 @@ _SAFE = frozenset({"GET", "HEAD"})
 
 
 class Keys:
-    """The secrets of one run: the token of the printed address, that of the address opened at the start, and the cookie's value.
+    """The secrets of one run: tokens of the address that is printed and of the one that is opened, and the cookie's value.
 
     Attributes
     ----------
@@ -114,7 +121,7 @@ class Access:
         elif (refusal := self._body_refusal(scope, headers)) is not None:
             await refuse(send, *refusal)
         else:
-            await self._application(scope, receive, _with_headers(send))
+            await self._application(scope, _with_deadline(receive), _with_headers(send))
 
     def _is_for_this_server(self, scope: Scope, headers: list[tuple[bytes, bytes]]) -> bool:
         """Whether the one Host is this server's, and the Origin, if there is one, too."""
@@ -127,7 +134,7 @@ class Access:
 
     @staticmethod
     def _is_from_this_site(scope: Scope, headers: list[tuple[bytes, bytes]]) -> bool:
-        """Whether the browser says that a page of this server, or the user, caused the request; another port is another site."""
+        """Whether a page of this server, or the user, caused the request, as the browser says; another port is another site."""
         sites = _values(headers, b"sec-fetch-site")
         allowed = {b"same-origin", b"none"} if scope["method"] in _SAFE else {b"same-origin"}
         return all(site in allowed for site in sites)
@@ -157,9 +164,9 @@ class Access:
         if scope["method"] in _SAFE and not lengths and not _values(headers, b"transfer-encoding"):
             return None
         limit = next(limit for start, limit in self._body_limits.items() if scope["path"].startswith(start))
-        if not lengths:
+        if not lengths or _values(headers, b"transfer-encoding"):  # the one that counts is not the length
             return (411, "The request does not state the length of its body.")
-        length = int(lengths[0]) if lengths[0].isdigit() and len(lengths[0]) < 20 else limit + 1  # noqa: PLR2004
+        length = int(lengths[0]) if lengths[0].isdigit() and len(lengths[0]) < 20 else limit + 1
         return (413, f"The request has {length} bytes; at most {limit} are accepted.") if length > limit else None
 
 
@@ -187,6 +194,24 @@ def _with_headers(send: Send) -> Send:
         await send(dict(message))
 
     return send_with_headers
+
+
+def _with_deadline(receive: Receive) -> Receive:
+    """Return a function that receives a body, and reports a client that sends nothing for a while as gone."""
+    is_complete = False
+
+    async def receive_in_time() -> Message:
+        nonlocal is_complete
+        if is_complete:  # what follows is the end of the connection, for which a stream of events waits
+            return await receive()
+        try:
+            message = await asyncio.wait_for(receive(), BODY_PAUSE)
+        except TimeoutError:
+            message = {"type": "http.disconnect"}
+        is_complete = not message.get("more_body", False)
+        return message
+
+    return receive_in_time
 
 
 def _token(scope: Scope) -> str | None:

@@ -2,26 +2,28 @@
 
 from __future__ import annotations
 
+import asyncio
+from http import HTTPStatus
+
 from starlette.applications import Starlette
 from starlette.exceptions import HTTPException
 from starlette.requests import Request
 from starlette.responses import PlainTextResponse, Response
-from starlette.routing import Mount
-from starlette.staticfiles import StaticFiles
 from starlette.types import ASGIApp
 
 from sprung.app import events, uploads
 from sprung.app.access import Access, Keys
 from sprung.app.jobs import Jobs, TooManyJobsError
-from sprung.app.pages import files, jobs
-from sprung.app.rendering import FOLDER
+from sprung.app.pages import assets, files
+from sprung.app.pages import jobs as job_pages
+from sprung.app.rendering import render, wants_page
 from sprung.app.workspace import ChangedError, OutsideError, Workspace
 from sprung.errors import SprungError
 
 LARGEST_BODY = 8_000_000
 """Largest body of a form in bytes; a campaign.toml has at most half of it."""
 
-_PAGES = (files, jobs)
+_PAGES = (assets, files, job_pages)
 """Modules with the routes of pages, in the order in which they are matched."""
 
 _STATUS: dict[type[Exception], int] = {OutsideError: 404, ChangedError: 409, TooManyJobsError: 429, SprungError: 400}
@@ -40,9 +42,8 @@ def create_application(workspace: Workspace, jobs: Jobs, keys: Keys, port: int) 
         Port on which the server listens.
     """
     routes = [route for module in (events, uploads, *_PAGES) for route in module.routes]
-    static = [Mount(f"/{name}", StaticFiles(directory=FOLDER / name)) for name in ("scripts", "styles")]
     application = Starlette(
-        routes=[*static, *routes],
+        routes=routes,
         exception_handlers={
             SprungError: _sprung_error,
             HTTPException: _http_error,
@@ -52,6 +53,7 @@ def create_application(workspace: Workspace, jobs: Jobs, keys: Keys, port: int) 
     application.state.workspace = workspace
     application.state.jobs = jobs
     application.state.streams = 0
+    application.state.uploads = asyncio.Semaphore(uploads.AT_ONCE)
     return Access(application, keys, port, {"/": LARGEST_BODY, uploads.PATH: uploads.LARGEST})
 
 
@@ -69,6 +71,8 @@ def _defect(request: Request, error: Exception) -> Response:
     return message(request, 500, f"This is a defect of sprung ({type(error).__name__}: {error}). Nothing was written.")
 
 
-def message(request: Request, status: int, text: str) -> Response:  # noqa: ARG001 (a page for browsers needs it)
-    """Return the answer to a request that failed."""
+def message(request: Request, status: int, text: str) -> Response:
+    """Return the answer to a request that failed: a page, or plain text for a script."""
+    if wants_page(request):
+        return render(request, "message.html", status, title=HTTPStatus(status).phrase, lines=text.splitlines())
     return PlainTextResponse(f"{text}\n", status)

@@ -36,9 +36,6 @@ _OPTIONS: dict[str, frozenset[str]] = {
 _TWO_WAY = frozenset({"settings", "page", "drawings", "fall", "report"})
 """Flags with an opposite, such as ``--no-fall``."""
 
-_OF_CAMPAIGNS = frozenset({"new", "check", "identify", "validate", "modal", "plan"})
-"""Commands that read recordings."""
-
 
 def arguments(
     workspace: Workspace,
@@ -77,9 +74,8 @@ def arguments(
     """
     if command not in _OPTIONS:
         raise ValueError(f"the page does not offer the command {command}")
-    if command in _OF_CAMPAIGNS:
-        for name in names:
-            check_sources(workspace, name)
+    for name in names:
+        check_sources(workspace, name)
     found = [command, *(_place(workspace, name) for name in names)]
     if output is not None:
         found += ["-o", _place(workspace, output)]
@@ -107,14 +103,14 @@ def start(jobs: Jobs, workspace: Workspace, arguments: Sequence[str], title: str
 
 
 def check_sources(workspace: Workspace, name: str) -> None:
-    """Check that a campaign, or a folder of recordings, refers to nothing outside the folder of the page.
+    """Check that a file or folder refers to nothing outside the folder of the page: what a command reads, and writes beside it.
 
     Parameters
     ----------
     workspace
         The folder of the page.
     name
-        A campaign file, a folder with one, or a folder of recordings.
+        A campaign file, a folder with one, a folder of recordings, a results folder.
 
     Raises
     ------
@@ -122,28 +118,32 @@ def check_sources(workspace: Workspace, name: str) -> None:
         If a file that the campaign names, or a link in the folder, leads out.
     """
     path = workspace.path(name)
-    if path.is_dir() and not (path / "campaign.toml").exists():
-        for link in (place for place in path.rglob("*") if place.is_symlink()):
-            _check_inside(workspace, link, workspace.name(link))
-        return
+    folder = path if path.is_dir() else path.parent
+    for link in workspace.listing(workspace.name(folder)).links_out:
+        raise _outside(workspace, link)
     file = path / "campaign.toml" if path.is_dir() else path
-    text, _ = workspace.read_text(workspace.name(file)) if file.suffix == ".toml" else ("", "")
+    if file.suffix != ".toml":
+        return
+    text, _ = workspace.read_text(workspace.name(file))
     try:
         document = tomllib.loads(text)
     except (tomllib.TOMLDecodeError, RecursionError):
         return  # the command says what is wrong, and reads nothing else
     for recording in _files(document):
-        _check_inside(workspace, file.resolve().parent / recording, f"{workspace.name(file)}: {recording}")
+        if not _is_inside(workspace, file.parent / recording):
+            raise _outside(workspace, f"{workspace.name(file)}: {recording}")
 
 
-def _check_inside(workspace: Workspace, path: Path, what: str) -> None:
+def _is_inside(workspace: Workspace, path: Path) -> bool:
     try:
-        inside = path.resolve().is_relative_to(workspace.folder)
-    except (OSError, RuntimeError, ValueError):
-        inside = False
-    if not inside:
-        do = f"Copy the file into {workspace.folder.name}, or start sprung app in a folder above both."
-        raise OutsideError(f"{what} leads out of the folder {workspace.folder.name}. {do}")
+        return path.resolve().is_relative_to(workspace.folder)
+    except (OSError, RuntimeError, ValueError):  # a link to itself, a name that is too long
+        return False
+
+
+def _outside(workspace: Workspace, what: str) -> OutsideError:
+    do = f"Copy the file into {workspace.folder.name}, or start sprung app in a folder above both."
+    return OutsideError(f"{what} leads out of the folder {workspace.folder.name}. {do}")
 
 
 def _files(document: Mapping[str, Any]) -> Iterator[str]:

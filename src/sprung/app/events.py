@@ -27,17 +27,23 @@ _RUN = secrets.token_hex(4)
 
 
 async def events(request: Request) -> Response:
-    """Answer with a stream of states; one that was interrupted goes on after its Last-Event-ID."""
+    """Answer with a stream of states; one that was interrupted goes on after its Last-Event-ID.
+
+    With ``?job=ID`` it contains only that job and ends with it: a browser opens at most six connections to one server.
+    """
     state = request.app.state
     if state.streams >= OPEN:
         return Response(f"{OPEN} pages follow the jobs already.", 503, {"Retry-After": "5"})
     run, _, number = request.headers.get("last-event-id", "").partition("-")
-    last = int(number) if run == _RUN and number.isdigit() and len(number) < 16 else 0  # noqa: PLR2004
+    wanted = request.query_params.get("job")
+    last = int(number) if run == _RUN and number.isdigit() and len(number) < 16 else 0
+    if wanted is not None and all(job.is_over and job.change <= last for job in state.jobs.all() if job.id == wanted):
+        return Response(status_code=204)  # the browser does not connect again
 
     async def stream() -> AsyncIterator[str]:
         state.streams += 1
         try:
-            async for text in _states(state.jobs, last):
+            async for text in _states(state.jobs, last, wanted):
                 yield text
         finally:
             state.streams -= 1
@@ -45,8 +51,8 @@ async def events(request: Request) -> Response:
     return StreamingResponse(stream(), media_type="text/event-stream")
 
 
-async def _states(jobs: Jobs, last: int) -> AsyncIterator[str]:
-    """Yield an event for every changed job, until the server stops."""
+async def _states(jobs: Jobs, last: int, wanted: str | None) -> AsyncIterator[str]:
+    """Yield an event for every changed job, or the wanted one, until it is over or the server stops."""
     loop, changed = asyncio.get_running_loop(), asyncio.Event()
     end = jobs.listen(lambda: loop.call_soon_threadsafe(changed.set))
     try:
@@ -55,7 +61,10 @@ async def _states(jobs: Jobs, last: int) -> AsyncIterator[str]:
             changed.clear()
             for job in jobs.changed_since(last):
                 last = job.change
-                yield f"id: {_RUN}-{last}\nevent: job\ndata: {json.dumps(job.document())}\n\n"
+                if wanted in {None, job.id}:
+                    yield f"id: {_RUN}-{last}\nevent: job\ndata: {json.dumps(job.document())}\n\n"
+                    if wanted and job.is_over:
+                        return
             await asyncio.sleep(_SHORTEST)
             try:
                 await asyncio.wait_for(changed.wait(), _QUIET)

@@ -154,7 +154,7 @@ class Jobs:
         self._queue: queue.SimpleQueue[str | None] = queue.SimpleQueue()
         self._lock = threading.RLock()
         self._changes = itertools.count(1)
-        self._listeners: set[Callable[[], None]] = set()
+        self._listeners: set[Callable[[], object]] = set()
         self._threads: list[threading.Thread] = []
         self.is_closing = False
 
@@ -236,7 +236,7 @@ class Jobs:
                     threading.Thread(target=_stop, args=(process,), daemon=True).start()
             return job
 
-    def listen(self, listener: Callable[[], None]) -> Callable[[], None]:
+    def listen(self, listener: Callable[[], object]) -> Callable[[], None]:
         """Call a function, from any thread, after every change; return the function that ends this."""
         with self._lock:
             self._listeners.add(listener)
@@ -300,7 +300,8 @@ class Jobs:
             self._processes[id_] = process
             began = time.time()
             self._put(replace(job, state="running", began=began))
-        assert process.stdout is not None and process.stderr is not None  # noqa: S101 (for mypy: both are pipes)
+        assert process.stdout is not None  # noqa: S101 (for mypy: it is a pipe)
+        assert process.stderr is not None  # noqa: S101
         output: list[str] = []
         reader = threading.Thread(target=_collect, args=(process.stdout, output), daemon=True)
         reader.start()

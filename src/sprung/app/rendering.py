@@ -38,11 +38,21 @@ def render(request: Request, template: str, status: int = 200, **context: Any) -
     status
         HTTP status.
     **context
-        Variables of the template.
+        Variables of the template, besides ``workspace_name``, and ``here``, the path of the page.
 
     Returns
     -------
     HTMLResponse
     """
-    text = environment().get_template(template).render(request=request, **context)
+    common = {
+        "request": request,
+        "workspace_name": request.app.state.workspace.folder.name,
+        "here": request.url.path,
+    }
+    text = environment().get_template(template).render(**common, **context)
     return HTMLResponse(text, status)
+
+
+def wants_page(request: Request) -> bool:
+    """Return whether a request shows a page in the browser; scripts ask for JSON instead."""
+    return "text/html" in request.headers.get("accept", "")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import errno
 import os
 import socket
@@ -12,6 +13,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import h11
 import uvicorn
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
@@ -24,8 +26,11 @@ from sprung.errors import InputError, Problem
 ADDRESS = "127.0.0.1"
 """The only address on which the server listens."""
 
+CONNECTIONS = 8192
+"""Open files that the server needs at most: as many connections, nearly."""
+
 HEADER_TIME = 20.0
-"""Time in which a client must have sent the head of its first request, s."""
+"""Time in which a client must send the head of a request, s."""
 
 
 def serve(
@@ -61,6 +66,7 @@ def serve(
         port = listening.getsockname()[1]
         keys, jobs = Keys(), Jobs()
         workspace.recover()
+        _allow_many_connections()
         application = create_application(workspace, jobs, keys, port)
         config = uvicorn.Config(
             application,
@@ -87,15 +93,31 @@ def serve(
 
 
 class _Protocol(H11Protocol):
-    """HTTP, with a limit of the time in which the head of the first request must arrive."""
+    """HTTP, with a limit of the time in which the head of a request must arrive."""
+
+    _deadline: asyncio.TimerHandle | None = None
 
     def connection_made(self, transport: Any) -> None:
         super().connection_made(transport)
-        self.loop.call_later(HEADER_TIME, self._close_if_silent)
+        self._watch()
 
-    def _close_if_silent(self) -> None:
-        if self.cycle is None and not self.transport.is_closing():
-            self.transport.close()
+    def data_received(self, data: bytes) -> None:
+        super().data_received(data)
+        self._watch()
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        super().connection_lost(exc)
+        if self._deadline is not None:
+            self._deadline.cancel()
+
+    def _watch(self) -> None:
+        """Close the connection in a while, unless a whole head has arrived."""
+        waits = self.conn.their_state is h11.IDLE
+        if waits and self._deadline is None:
+            self._deadline = self.loop.call_later(HEADER_TIME, self.transport.close)
+        elif not waits and self._deadline is not None:
+            self._deadline.cancel()
+            self._deadline = None
 
 
 class _Server(uvicorn.Server):
@@ -131,6 +153,17 @@ def _listen(port: int) -> socket.socket:
         do = "Leave --port out: any free port is then used. Or choose another one."
         raise InputError([Problem(f"--port {port}", found, "a free port", do)]) from error
     return listening
+
+
+def _allow_many_connections() -> None:
+    """Raise the limit of open files, of which every connection is one, as far as the system permits without privileges."""
+    try:
+        import resource  # noqa: PLC0415 (not on Windows)
+
+        hard = resource.getrlimit(resource.RLIMIT_NOFILE)[1]
+        resource.setrlimit(resource.RLIMIT_NOFILE, (hard if 0 < hard < CONNECTIONS else CONNECTIONS, hard))
+    except (ImportError, OSError, ValueError):
+        return
 
 
 def _has_screen() -> bool:

@@ -13,7 +13,7 @@ from starlette.requests import ClientDisconnect, Request
 from starlette.responses import JSONResponse, Response
 from starlette.routing import Route
 
-from sprung.app.workspace import NEW, OutsideError, Workspace, unwritable
+from sprung.app.workspace import NEW, Workspace, unwritable
 from sprung.files import new_token, temporary_path
 
 PATH = "/upload/"
@@ -25,11 +25,8 @@ LARGEST = 2 << 30
 _SPARE = 200 << 20
 """Space that remains free on the disk, bytes."""
 
-_LONGEST_PAUSE = 30.0
-"""Longest time without a byte of an upload, s."""
-
-_AT_ONCE = asyncio.Semaphore(4)
-"""Uploads that are received at the same time; the others wait."""
+AT_ONCE = 4
+"""Number of uploads that are received at the same time; the others wait."""
 
 
 async def upload(request: Request) -> Response:
@@ -38,13 +35,11 @@ async def upload(request: Request) -> Response:
     name = request.path_params["name"]
     if request.headers.get("content-type", "application/octet-stream") != "application/octet-stream":
         raise HTTPException(415, "A file is sent as application/octet-stream.")
-    path = workspace.path(name)
-    if path == workspace.folder or not path.parent.is_dir():
-        raise OutsideError(f"{name!r} is not a name in a folder of {workspace.folder.name}.")
+    path = workspace.new_path(name)
     length = int(request.headers["content-length"])
     if length > shutil.disk_usage(path.parent).free - _SPARE:
         raise HTTPException(507, f"{name} has {length} bytes, for which the disk has no room.")
-    async with _AT_ONCE:
+    async with request.app.state.uploads:
         await _receive(request, workspace, path)
     return JSONResponse({"name": name, "size": length}, 201)
 
@@ -52,20 +47,14 @@ async def upload(request: Request) -> Response:
 async def _receive(request: Request, workspace: Workspace, path: Path) -> None:
     """Write the body of a request to a hidden file, and give it its name when it is whole."""
     new = temporary_path(path, new_token(), "new")
-    pieces = request.stream()
     try:
         with new.open("xb") as file:
-            while True:
-                piece = await asyncio.wait_for(anext(pieces, None), _LONGEST_PAUSE)
-                if piece is None:
-                    break
+            async for piece in request.stream():
                 await asyncio.to_thread(file.write, piece)
             file.flush()
             await asyncio.to_thread(os.fsync, file.fileno())
         workspace.install(new, path, NEW)
     except OSError as error:
-        if isinstance(error, TimeoutError):
-            raise HTTPException(408, f"{path.name} did not arrive whole; nothing was written.") from error
         raise unwritable(path.name, error) from error
     except ClientDisconnect as error:
         raise HTTPException(400, f"{path.name} did not arrive whole; nothing was written.") from error

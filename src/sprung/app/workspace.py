@@ -28,11 +28,17 @@ LARGEST_TEXT = 4_000_000
 _MOST = 20_000
 """Most entries of a listing."""
 
+_LONGEST = 255
+"""Longest name of a file, bytes."""
+
 _DEEPEST = 5
 """Most folders between the workspace and an entry of a listing."""
 
-_FORBIDDEN = re.compile(r'[\x00-\x1f\x7f\\<>:"|?*]')
-"""Control characters, and what Windows does not permit in a name or takes for a drive, a stream or a separator."""
+_FORBIDDEN = re.compile(r"[\x00-\x1f\x7f-\x9f\ud800-\udfff\u202a-\u202e\u2066-\u2069\\/]")
+"""Control characters also of the direction of writing, bytes that are no text, and separators of any system."""
+
+_UNPORTABLE = re.compile(r'[<>:"|?*]|[ .]$|^(con|prn|aux|nul|com\d|lpt\d)(\.|$)', re.IGNORECASE)
+"""What Windows does not permit in a name or takes for a drive, a stream or a device."""
 
 
 class OutsideError(SprungError, ValueError):
@@ -75,10 +81,16 @@ class Listing:
         In alphabetical order.
     is_complete
         Whether these are all: a folder with very many files, or very deep ones, is not listed to the end.
+    links_out
+        Names of links that lead out of the workspace; they are left out.
+    unreadable_names
+        Names that are no text, in printable form; they are left out.
     """
 
     entries: tuple[Entry, ...]
     is_complete: bool
+    links_out: tuple[str, ...]
+    unreadable_names: tuple[str, ...]
 
 
 class Workspace:
@@ -110,7 +122,7 @@ class Workspace:
         Raises
         ------
         OutsideError
-            If it leads out of the folder, also by a link; if a part of it is hidden; if it is no name on every system.
+            If it leads out of the folder, also by a link; if a part of it is hidden; if it cannot be a name.
         """
         parts = name.split("/") if name else []
         if any(not _is_plain(part) for part in parts):
@@ -125,6 +137,21 @@ class Workspace:
             raise OutsideError(
                 f"{name!r} leads out of the folder {self.folder.name}. Start sprung in a folder above both."
             )
+        return path
+
+    def new_path(self, name: str) -> Path:
+        """Return the absolute path of a file to be made, in an existing folder, with a name that every system permits.
+
+        Raises
+        ------
+        OutsideError
+            As for `path`, or if the name cannot be used elsewhere or the folder does not exist.
+        """
+        path = self.path(name)
+        if path == self.folder or _UNPORTABLE.search(name.rpartition("/")[2]):
+            raise OutsideError(f"{name!r} is not a name that every system permits. Rename the file first.")
+        if not path.parent.is_dir():
+            raise OutsideError(f"{self.folder.name} has no folder {self.name(path.parent)!r}. Make it first.")
         return path
 
     def name(self, path: Path) -> str:
@@ -142,31 +169,41 @@ class Workspace:
             Number of folders below it that are opened, one in the other; 0 lists only the folder itself.
         """
         entries: list[Entry] = []
+        links_out: list[str] = []
+        unreadable: list[str] = []
         is_complete = True
         for entry in self._entries(self.path(folder), folder, deepest):
-            if entry is None or len(entries) == _MOST:
+            if isinstance(entry, str):
+                (unreadable if _FORBIDDEN.search(entry.replace("/", "")) else links_out).append(entry)
+            elif entry is None:
                 is_complete = False
-                if entry is not None:
-                    break
-                continue
-            entries.append(entry)
-        return Listing(tuple(entries), is_complete)
+            elif len(entries) < _MOST:
+                entries.append(entry)
+            else:
+                is_complete = False
+                break
+        return Listing(tuple(entries), is_complete, tuple(links_out), tuple(ascii(name)[1:-1] for name in unreadable))
 
-    def _entries(self, place: Path, name: str, deepest: int) -> Iterator[Entry | None]:
-        """Yield the entries; None for a folder that is too deep."""
+    def _entries(self, place: Path, name: str, deepest: int) -> Iterator[Entry | str | None]:
+        """Yield the entries; the name of one that is left out; None for a folder that is too deep."""
         try:
             with os.scandir(place) as found:
                 items = sorted(found, key=lambda item: item.name)
         except OSError:  # no permission, or removed meanwhile
             return
         for item in items:
+            if item.name.startswith("."):
+                continue
             inside = f"{name}/{item.name}" if name else item.name
             try:
-                if not _is_plain(item.name) or (item.is_symlink() and self.path(inside) is None):
-                    continue
+                if item.is_symlink() or not _is_plain(item.name):
+                    self.path(inside)
                 state = item.stat()
                 is_folder = item.is_dir()
-            except (OSError, OutsideError):
+            except OutsideError:
+                yield inside
+                continue
+            except OSError:  # removed meanwhile, or a link to nothing
                 continue
             yield Entry(inside, is_folder, 0 if is_folder else state.st_size, state.st_mtime)
             if is_folder and not item.is_symlink():
@@ -296,8 +333,9 @@ def unwritable(name: str, error: OSError) -> InputError:
 
 
 def _is_plain(part: str) -> bool:
-    """Whether a text can name a file on every system: neither hidden nor ``..``, no separator or control character."""
-    return bool(part) and not part.startswith(".") and not part.endswith((" ", ".")) and not _FORBIDDEN.search(part)
+    """Whether a text can name a file that is not hidden: not ``..``, no separator or control character."""
+    is_name = bool(part) and not part.startswith(".") and not _FORBIDDEN.search(part) and len(part.encode()) <= _LONGEST
+    return is_name and not (os.name == "nt" and _UNPORTABLE.search(part))
 
 
 def _content(path: Path, name: str) -> bytes | None:
