@@ -23,7 +23,7 @@ class CheckedDocument:
     Attributes
     ----------
     campaign
-        Vehicle, sensors and loads as far as they could be understood, in SI, without drops; None where what is stated cannot be.
+        Vehicle, sensors and loads as far as they could be understood, in SI, without drops; None where they cannot be.
     problems
         What makes the file unusable.
     missing
