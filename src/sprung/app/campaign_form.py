@@ -16,7 +16,7 @@ from sprung.errors import Problem
 from sprung.vehicle import LAYOUTS
 
 MANY = 60
-"""Number of entries of one kind beyond which seldom used keys are shown only where they are stated: a form has a largest size."""
+"""Number of entries of a kind beyond which seldom used keys are shown only where they are stated: a form has a largest size."""
 
 _WHERE = re.compile(r"^[^:]+: (\w+(?:\[\d+\])?(?:\.\w+(?:\[\d+\])?)*)")
 """The place in a problem, as `sprung.campaign` writes it: ``campaign.toml: sensor[3].position (body_rl)``."""

@@ -11,7 +11,7 @@ from typing import Any, Literal
 from sprung.campaign import schema_text
 
 Kind = Literal["text", "date", "lines", "choice", "several", "number", "measured", "vector"]
-"""Text, a date, several texts, a word of some, several of them, a number, one with its standard uncertainty, several numbers."""
+"""Text, a date, several texts, a word of some, several of them, a number, one with its uncertainty, several numbers."""
 
 _LABELS = {
     "cg_height": "Height of the centre of gravity",
@@ -107,7 +107,7 @@ class Spec:
 
 @cache
 def section_specs(section: str) -> tuple[Spec, ...]:
-    """Return the fields of a section of the campaign file, such as ``sensor``, or of an ``item`` of a load, in their usual order."""
+    """Return the fields of a section of the campaign file, such as ``sensor``, or of an ``item`` of a load, in their order."""
     if section == "known":
         return tuple(_known_specs())
     model = {**_MODELS, **ENTRIES, "item": "Item"}[section]

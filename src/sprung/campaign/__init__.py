@@ -26,6 +26,7 @@ from sprung.campaign.schema_file import SCHEMA_FILE, SCHEMA_LINE, schema_text
 from sprung.campaign.sep005 import to_sep005
 from sprung.campaign.source_file import SourceFile
 from sprung.campaign.statements import check_statements, require_plausible
+from sprung.campaign.toml_document import parse_toml
 from sprung.campaign.writing import campaign_files, write
 
 __all__ = [
@@ -59,6 +60,7 @@ __all__ = [
     "find_placeholders",
     "merge_loggers",
     "parse_known_values",
+    "parse_toml",
     "placeholder",
     "read",
     "read_document",

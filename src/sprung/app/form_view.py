@@ -1,0 +1,132 @@
+"""The page of a campaign as data: its text, the form of it, and the sketch; answered by a query process."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from sprung.app.campaign_form import CampaignForm, campaign_form
+from sprung.app.campaign_text import apply_changes
+from sprung.app.form_actions import apply_action
+from sprung.app.form_changes import understand, with_problems
+from sprung.campaign import Campaign, parse_toml
+from sprung.errors import InputError, record_failure
+from sprung.report import sketch_svg, vehicle_sketch
+
+
+def ready() -> bool:
+    """Return True, once this module with all that it needs has been loaded."""
+    return True
+
+
+def form_view(
+    path: str, text: str, entered: Mapping[str, Sequence[str]] | None = None, action: str = ""
+) -> dict[str, Any]:
+    """Return a campaign file with what was entered in its form.
+
+    Parameters
+    ----------
+    path
+        Of the file; absolute.
+    text
+        Of the file as the form was made from it.
+    entered
+        Values by the names of the inputs; None where nothing was entered.
+    action
+        Button of the form that adds or removes something; empty for none.
+
+    Returns
+    -------
+    dict
+        ``text`` with the changes; ``form``, its groups and fields; ``unclear``, the number of inputs that were not understood;
+        ``sketch``, two drawings, their legend and what is unknown.
+
+    Raises
+    ------
+    InputError
+        If the text is no TOML, or the action is not possible.
+    """
+    place = Path(path)
+    parse_toml(text.removeprefix("\ufeff"), place)
+    unclear = {}
+    refused: list[str] = []
+    if entered is not None:
+        understood = understand(campaign_form(text, place)[0], entered)
+        unclear = dict(understood.problems)
+        try:
+            text = apply_changes(text, understood.changes)
+        except InputError as error:  # an entry that is written in a way that only its author can change
+            refused = [str(problem) for problem in error.problems]
+    if action and not unclear:
+        text = apply_action(text, action)
+    form, checked = campaign_form(text, place)
+    if entered is not None:
+        form = with_problems(form, entered, unclear)
+    return {
+        "text": text,
+        "form": _document(form),
+        "unclear": len(unclear) + len(refused),
+        "refused": refused,
+        "sketch": sketch(checked.campaign),
+    }
+
+
+def text_view(path: str, text: str) -> dict[str, Any]:
+    """Return the problems and gaps of a campaign file that is edited as text.
+
+    Parameters
+    ----------
+    path
+        Of the file; absolute.
+    text
+        As it was entered.
+
+    Raises
+    ------
+    InputError
+        If it is no TOML.
+    """
+    parse_toml(text.removeprefix("\ufeff"), Path(path))
+    form, checked = campaign_form(text, Path(path))
+    problems = [*form.problems, *(problem for group in form.groups for problem in group.problems)]
+    for group in form.groups:
+        for part in (group, *group.items):
+            problems += [problem for each in part.fields for problem in each.problems]
+    missing = [asdict(entry.problem) for entry in checked.missing]
+    return {"problems": [asdict(problem) for problem in problems], "missing": missing}
+
+
+def sketch(campaign: Campaign | None) -> dict[str, Any]:
+    """Return the sketch of a campaign as SVG elements.
+
+    Parameters
+    ----------
+    campaign
+        Without drops; None where nothing can be drawn.
+    """
+    found: dict[str, Any] = {"drawings": [], "key": "", "unknown": []}
+    if campaign is not None:
+        omissions: list[str] = []
+        with record_failure(omissions, "The sketch"):
+            drawn = vehicle_sketch(campaign)
+            found = {
+                "drawings": [{"title": each.title, "svg": sketch_svg(each, movable=True)} for each in drawn.drawings],
+                "key": drawn.key,
+                "unknown": list(drawn.unknown),
+            }
+        found["unknown"] += omissions
+    return found
+
+
+def _document(form: CampaignForm) -> dict[str, Any]:
+    """Return a form as data for the template and the script of its page."""
+    document = asdict(form)
+    for group, own in zip(document["groups"], form.groups, strict=True):
+        for fields, owners in [(group["fields"], own.fields)] + [
+            (item["fields"], other.fields) for item, other in zip(group["items"], own.items, strict=True)
+        ]:
+            for each, owner in zip(fields, owners, strict=True):
+                each["folded"] = owner.is_folded
+    return document
