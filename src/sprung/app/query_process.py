@@ -1,7 +1,7 @@
 """A process that answers short questions: forms, sketches and pictures of recordings, one JSON document in each line.
 
-``python -P -m sprung.app.query_process`` reads ``{"question": "module:function", "arguments": {...}}`` from standard input, and
-writes ``{"answer": ...}``, ``{"problems": [...]}`` or ``{"defect": "..."}``. It ends when its standard input does, which is when
+``python -P -m sprung.app.query_process`` reads ``{"question": "module:function", "arguments": {...}}`` from standard input and
+writes ``{"answer": ...}``, ``{"problems": [...]}`` or ``{"defect": ...}``. It ends when its standard input does, which is when
 the server ends, also where it was killed.
 """
 
