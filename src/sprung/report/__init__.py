@@ -20,6 +20,7 @@ from sprung.report.page.fleet import FLEET_FILE, fleet_html
 from sprung.report.page.pdf import pdf_of
 from sprung.report.page.report import render_report, report_html
 from sprung.report.page.style import page_style
+from sprung.report.page.summary import VerdictText, verdict_text
 from sprung.report.pictures.amplitudes import amplitude_pictures
 from sprung.report.pictures.channels import channels_picture
 from sprung.report.pictures.curves import curve_pictures
@@ -71,6 +72,7 @@ __all__ = [
     "Stroke",
     "TextShape",
     "VehicleSketch",
+    "VerdictText",
     "add_report",
     "amplitude_pictures",
     "blank_sketch",
@@ -111,6 +113,7 @@ __all__ = [
     "truth_view",
     "validation_view",
     "vehicle_sketch",
+    "verdict_text",
     "wire_frame",
     "write_check",
     "write_fleet",
