@@ -14,7 +14,7 @@ from starlette.types import ASGIApp
 from sprung.app import events, uploads
 from sprung.app.access import Access, Keys
 from sprung.app.jobs import Jobs, TooManyJobsError
-from sprung.app.pages import assets, comparison, exporting, files, planning, results, riding
+from sprung.app.pages import assets, campaign, comparison, exporting, files, folder, planning, results, riding, running
 from sprung.app.pages import jobs as job_pages
 from sprung.app.rendering import render, wants_page
 from sprung.app.workspace import ChangedError, OutsideError, Workspace
@@ -23,7 +23,7 @@ from sprung.errors import SprungError
 LARGEST_BODY = 8_000_000
 """Largest body of a form in bytes; a campaign.toml has at most half of it."""
 
-_PAGES = (assets, files, job_pages, results, comparison, planning, exporting, riding)
+_PAGES = (assets, folder, campaign, running, files, job_pages, results, comparison, planning, exporting, riding)
 """Modules with the routes of pages, in the order in which they are matched."""
 
 _STATUS: dict[type[Exception], int] = {OutsideError: 404, ChangedError: 409, TooManyJobsError: 429, SprungError: 400}

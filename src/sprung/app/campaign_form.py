@@ -213,7 +213,8 @@ def _marks(document: Mapping[str, Any], checked: CheckedDocument, path: Path) ->
         if found is not None:
             marks.missing[_name_of(found[1])] = entry.problem.expected
     for place, what in find_placeholders(document):
-        marks.missing[name_of(place)] = what
+        # A form has no notation to explain.
+        marks.missing[name_of(place)] = re.sub(r": a number or \{.*|; or remove (?:this|the) line.*", "", what)
     return marks
 
 

@@ -61,6 +61,9 @@ _RARE = {
 }
 """Keys that most campaigns do without: shown where they are used, folded otherwise."""
 
+_ORDER = ("file", "load", "wheels", "start", "end", "window", "files", "name", "excitation", "speed", "height")
+"""Keys of a drop as its fields stand beside each other."""
+
 _PARTS = {"position": ("x", "y", "z"), "inertia": ("I_xx", "I_yy"), "window": ("from", "to")}
 """Names of the numbers of a vector."""
 
@@ -89,6 +92,8 @@ class Spec:
         Names of the numbers of a vector.
     example
         As text.
+    default
+        What holds where the file states nothing; empty where that is not a word.
     required, rare
         Whether it must be stated; whether most campaigns do without.
     """
@@ -101,6 +106,7 @@ class Spec:
     choices: tuple[str, ...] = ()
     parts: tuple[str, ...] = ()
     example: str = ""
+    default: str = ""
     required: bool = False
     rare: bool = False
 
@@ -124,7 +130,7 @@ def _specs(model: str, prefix: str = "", rare: bool = False) -> list[Spec]:
             found += _specs(inner, f"{key}.", seldom or inner == "Added")
         elif key != "items":
             found.append(_spec(f"{prefix}{key}", key, node, key in definition.get("required", ()), seldom))
-    return found
+    return sorted(found, key=lambda spec: _ORDER.index(spec.key)) if model == "Drop" else found
 
 
 def _spec(name: str, key: str, node: Mapping[str, Any], required: bool, rare: bool) -> Spec:
@@ -140,6 +146,7 @@ def _spec(name: str, key: str, node: Mapping[str, Any], required: bool, rare: bo
         choices,
         _PARTS.get(key, ()) if kind == "vector" else (),
         example if isinstance(example, str) else "",
+        default if isinstance(default := node.get("default"), str) else "",
         required,
         rare,
     )

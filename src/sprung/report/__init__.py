@@ -2,7 +2,7 @@
 
 from sprung.report.drawing.palette import LIGHT
 from sprung.report.drawing.picture import Band, Curve, Mark, Panel, Picture, Points, Rule
-from sprung.report.drawing.svg import picture_svg
+from sprung.report.drawing.svg import picture_frame, picture_svg
 from sprung.report.drawings import draw_check, draw_validation
 from sprung.report.folder import (
     REPORT_FILES,
@@ -96,6 +96,7 @@ __all__ = [
     "paper_view",
     "parameters_picture",
     "pdf_of",
+    "picture_frame",
     "picture_svg",
     "plan_view",
     "recording_picture",
