@@ -7,9 +7,11 @@ import json
 import secrets
 from collections.abc import AsyncIterator
 
+from starlette.datastructures import State
 from starlette.requests import Request
 from starlette.responses import Response, StreamingResponse
 from starlette.routing import Route
+from starlette.types import Receive, Scope, Send
 
 from sprung.app.jobs import Jobs
 
@@ -40,15 +42,25 @@ async def events(request: Request) -> Response:
     if wanted is not None and all(job.is_over and job.change <= last for job in state.jobs.all() if job.id == wanted):
         return Response(status_code=204)  # the browser does not connect again
 
-    async def stream() -> AsyncIterator[str]:
-        state.streams += 1
-        try:
-            async for text in _states(state.jobs, last, wanted):
-                yield text
-        finally:
-            state.streams -= 1
+    return _CountedStream(_states(state.jobs, last, wanted), state)
 
-    return StreamingResponse(stream(), media_type="text/event-stream")
+
+class _CountedStream(StreamingResponse):
+    """A stream that is counted while it is open, however it ends."""
+
+    media_type = "text/event-stream"
+
+    def __init__(self, content: AsyncIterator[str], state: State) -> None:
+        super().__init__(content)
+        self._state = state
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Answer a request."""
+        self._state.streams += 1
+        try:
+            await super().__call__(scope, receive, send)
+        finally:
+            self._state.streams -= 1
 
 
 async def _states(jobs: Jobs, last: int, wanted: str | None) -> AsyncIterator[str]:
