@@ -87,6 +87,18 @@ def wait_for(condition: Callable[[], Found], limit: float = 20.0) -> Found:
     return found
 
 
+def processes_in(folder: Path) -> list[int]:
+    """Return the processes of jobs that work in a folder."""
+    found = []
+    for entry in Path("/proc").iterdir():
+        try:
+            if entry.name.isdigit() and (entry / "cwd").readlink() == folder:
+                found += [int(entry.name)] * (b"sprung.app.job_process" in (entry / "cmdline").read_bytes())
+        except OSError:  # it has ended meanwhile
+            continue
+    return found
+
+
 def start(folder: Path, *options: str, **environment: str) -> subprocess.Popen[str]:
     """Start the command without waiting for it."""
     return subprocess.Popen(  # noqa: S603 (this Python)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import json
-import os
 import struct
 import subprocess
 import sys
@@ -16,7 +15,7 @@ from pathlib import Path
 import pytest
 
 from command_line import copy_sedan, run
-from served import served, wait_for
+from served import processes_in, served, wait_for
 from sprung.app import jobs as module
 from sprung.app.events import _states as stream_states
 from sprung.app.job_process import LEAST
@@ -33,18 +32,6 @@ def jobs() -> Iterator[Jobs]:
 def ended(jobs: Jobs, job: Job, limit: float = 60.0) -> Job:
     wait_for(lambda: jobs.get(job.id).is_over, limit)
     return jobs.get(job.id)
-
-
-def processes(folder: Path) -> list[int]:
-    """Processes that work in a folder."""
-    found = []
-    for entry in Path("/proc").iterdir():
-        try:
-            if entry.name.isdigit() and (entry / "cwd").readlink() == folder and int(entry.name) != os.getpid():
-                found.append(int(entry.name))
-        except OSError:
-            continue
-    return found
 
 
 def test_a_job_does_what_the_command_does(jobs: Jobs, tmp_path: Path) -> None:
@@ -82,11 +69,11 @@ def test_the_same_command_is_not_started_twice(jobs: Jobs, tmp_path: Path) -> No
 def test_two_run_and_others_wait_and_are_cancelled(jobs: Jobs, tmp_path: Path) -> None:
     copy_sedan(tmp_path / "car")
     started = [jobs.start(("validate", "car", "-o", name), tmp_path, name) for name in ("a", "b", "c")]
-    wait_for(lambda: len(processes(tmp_path)) == 2)
+    wait_for(lambda: len(processes_in(tmp_path)) == 2)
     assert [jobs.get(job.id).state for job in started] == ["running", "running", "waiting"]
     for job in reversed(started):
         assert jobs.cancel(job.id).state == "cancelled"
-    wait_for(lambda: not processes(tmp_path))
+    wait_for(lambda: not processes_in(tmp_path))
     assert [jobs.get(job.id).status for job in started] == [None] * 3
     assert jobs.cancel(started[0].id) == jobs.get(started[0].id)
     assert [path.name for path in tmp_path.iterdir()] == ["car"]  # nothing was written
@@ -116,9 +103,9 @@ def test_closing_ends_everything(tmp_path: Path) -> None:
     copy_sedan(tmp_path / "car")
     jobs = Jobs()
     job = jobs.start(("validate", "car"), tmp_path, "")
-    wait_for(lambda: processes(tmp_path))
+    wait_for(lambda: processes_in(tmp_path))
     jobs.close()
-    assert processes(tmp_path) == []
+    assert processes_in(tmp_path) == []
     assert jobs.get(job.id).state == "cancelled"
     with pytest.raises(TooManyJobsError):
         jobs.start(("check", "car"), tmp_path, "")
