@@ -74,9 +74,17 @@ def drop_view(path: str, root: str, text: str, entered: Mapping[str, Sequence[st
 
 
 def _check(document: Mapping[str, Any], drop: Mapping[str, Any], path: Path) -> Check:
+    """Check one recording; with the positions of the sensors, from which the landing follows, if they are possible ones."""
+    try:
+        return _checked(document, drop, path, (*_OF_READING, "position"))
+    except InputError:
+        return _checked(document, drop, path, _OF_READING)
+
+
+def _checked(document: Mapping[str, Any], drop: Mapping[str, Any], path: Path, keys: Sequence[str]) -> Check:
     """Check one recording, whatever else of the campaign is missing or wrong."""
     sensors = [
-        {key: value for key, value in sensor.items() if key in _OF_READING}
+        {key: value for key, value in sensor.items() if key in keys}
         for sensor in document.get("sensor", [])
         if isinstance(sensor, dict)
     ]

@@ -24,7 +24,7 @@ function check() {
 
 async function ask() {
   const own = ++asked;
-  const answer = await fetch(form.action.replace("/campaign?", "/campaign/live?"), { method: "POST", body: body() }).catch(() => null);
+  const answer = await fetch(form.getAttribute("action").replace("/campaign?", "/campaign/live?"), { method: "POST", body: body() }).catch(() => null);
   if (own !== asked) return; // a later question was asked meanwhile
   if (!answer?.ok) {
     document.querySelector("#state").textContent = answer ? (await answer.text()).trim() : "sprung does not answer. Start it again; what is entered here remains.";

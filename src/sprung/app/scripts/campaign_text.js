@@ -14,7 +14,7 @@ addEventListener("keydown", (event) => {
 
 async function ask() {
   const own = ++asked;
-  const answer = await fetch(form.action.replace("/campaign?", "/campaign/live?"), { method: "POST", body: new URLSearchParams(new FormData(form)) }).catch(() => null);
+  const answer = await fetch(form.getAttribute("action").replace("/campaign?", "/campaign/live?"), { method: "POST", body: new URLSearchParams(new FormData(form)) }).catch(() => null);
   if (own !== asked || !answer?.ok) return;
   const found = await answer.json();
   document.querySelector("#state").textContent = found.state;

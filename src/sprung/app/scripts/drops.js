@@ -18,7 +18,7 @@ export function setUpRecordings(form, body) {
   async function draw(details) {
     const place = details.querySelector(".drawn");
     place.setAttribute("aria-busy", "true");
-    const address = `${form.action.replace("/campaign?", "/campaign/drop?")}&drop=${details.dataset.drop}`;
+    const address = `${form.getAttribute("action").replace("/campaign?", "/campaign/drop?")}&drop=${details.dataset.drop}`;
     const answer = await fetch(address, { method: "POST", body: body() }).catch(() => null);
     place.removeAttribute("aria-busy");
     if (!answer?.ok) {
