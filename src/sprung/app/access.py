@@ -147,7 +147,7 @@ class Access:
         )
 
     async def _admit(self, scope: Scope, headers: list[tuple[bytes, bytes]], token: str, send: Send) -> None:
-        """Give the cookie to a browser that opens the printed address, and send it to the first page."""
+        """Send the cookie to a browser that opens the printed address, and the browser to the first page."""
         if scope["method"] != "GET" or scope["path"] != "/" or not self._keys.admits(token):
             await refuse(send, 403, "This key is not valid. Open the address that sprung printed in the terminal last.")
             return

@@ -382,8 +382,8 @@ def _step(text: str, at: float) -> JobStep | None:
     if not text.startswith('{"progress"'):
         return None
     try:
-        told = json.loads(text)["progress"]
-        return JobStep(told["text"], told["stage"], told["step"], told["of"], told["done"], at)
+        step = json.loads(text)["progress"]
+        return JobStep(step["text"], step["stage"], step["step"], step["of"], step["done"], at)
     except (ValueError, LookupError, TypeError):
         return None
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import asyncio
 import os
 import shutil
 from contextlib import suppress
 from pathlib import Path
 
+from starlette.concurrency import run_in_threadpool
 from starlette.exceptions import HTTPException
 from starlette.requests import ClientDisconnect, Request
 from starlette.responses import JSONResponse, Response
@@ -50,9 +50,9 @@ async def _receive(request: Request, workspace: Workspace, path: Path) -> None:
     try:
         with new.open("xb") as file:
             async for piece in request.stream():
-                await asyncio.to_thread(file.write, piece)
+                await run_in_threadpool(file.write, piece)
             file.flush()
-            await asyncio.to_thread(os.fsync, file.fileno())
+            await run_in_threadpool(os.fsync, file.fileno())
         workspace.install(new, path, NEW)
     except OSError as error:
         raise unwritable(path.name, error) from error

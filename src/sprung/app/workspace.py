@@ -284,7 +284,7 @@ class Workspace:
         return _version(content)
 
     def install(self, new: Path, path: Path, version: str | None) -> None:
-        """Give a complete temporary file its name.
+        """Rename a complete temporary file to its final name.
 
         Parameters
         ----------

@@ -63,8 +63,8 @@ def working(first: str) -> Iterator[Progress]:
 
 def _report_step(step: Step) -> None:
     """Print a step for another program."""
-    told = {"text": str(step), "stage": step.stage, "step": step.step, "of": step.of, "done": step.done}
-    complain(json.dumps({"progress": told}))
+    document = {"text": str(step), "stage": step.stage, "step": step.step, "of": step.of, "done": step.done}
+    complain(json.dumps({"progress": document}))
 
 
 class StatusLine:
