@@ -13,32 +13,14 @@ import pytest
 
 import sprung
 from browser_page import Tabs, chromium, tabs
-from served import Served, served, wait_for
-from sprung.campaign import Drop
-
-HATCHBACK = sprung.Vehicle(
-    m_s=1050, I_yy=1450, I_xx=340, m_uf=38, m_ur=34, k_sf=19000, k_sr=18000, k_tf=190000, k_tr=190000, c_sf=1400, c_sr=1300,
-    a=1.05, b=1.50, t_f=0.58, t_r=0.56, name="Hatchback",
-)  # fmt: skip
-SANDBAGS = sprung.Load(
-    name="sandbags", items=({"mass": 120, "position": (-1.9, 0.35, 0.6)}, {"mass": 60, "position": (-0.6, -0.3, 0.7)})
-)
-WHEELS = (("fl", "fr", "rl", "rr"), ("fl", "fr"), ("rl", "rr"), ("fl", "rl"), ("fr", "rr"))
-POSITIONS = {
-    "body_fl": (0.10, 0.58, 0.50),
-    "body_fr": (0.10, -0.58, 0.50),
-    "body_rl": (-2.65, 0.56, 0.50),
-    "body_rr": (-2.65, -0.56, 0.50),
-}
+from raw_recordings import HATCHBACK, ITEMS, POSITIONS, write_recordings
+from served import Served, served
 
 
 @pytest.fixture(scope="module")
 def recordings(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
-    """Ten raw recordings: five drops empty, five with sandbags; no campaign file."""
-    drops = tuple(Drop(wheels=wheels, load=load) for load in ("empty", "sandbags") for wheels in WHEELS)
-    campaign = sprung.simulate(HATCHBACK, loads=(SANDBAGS,), drops=drops, rate=250, noise=0.05, seed=1)
-    folder = sprung.write(campaign, tmp_path_factory.mktemp("raw")).parent
-    return sorted(folder.glob("*.csv"))
+    """Ten raw recordings: five drops empty, five with sandbags."""
+    return write_recordings(tmp_path_factory.mktemp("raw"))
 
 
 @pytest.fixture(scope="module")
@@ -81,10 +63,10 @@ def test_ten_recordings_become_an_accepted_report(user: Tabs, server: Served, re
             page.fill(f"[id='sensor.{number}.position.{axis}']", f"{value:.2f}".replace(".", ","))
     page.get_by_role("button", name="Add an item").click()
     page.get_by_role("button", name="Add an item").click()
-    for number, (mass, place) in enumerate(((120, "-1.9 0.35 0.6"), (60, "-0.6 -0.3 0.7"))):
+    for number, (mass, place) in enumerate(ITEMS):
         page.fill(f"[id='load.0.items.{number}.mass.value']", str(mass))
-        for axis, value in enumerate(place.split()):
-            page.fill(f"[id='load.0.items.{number}.position.{axis}']", value)
+        for axis, value in enumerate(place):
+            page.fill(f"[id='load.0.items.{number}.position.{axis}']", str(value))
     page.locator("#state", has_text="nothing is missing").wait_for()
 
     # A recording with its limits; nothing is stated of them.
@@ -123,8 +105,8 @@ def test_ten_recordings_become_an_accepted_report(user: Tabs, server: Served, re
     report.get_by_role("heading", name="Hatchback").or_(report.get_by_role("heading", name="work")).first.wait_for()
     assert "accept" in page.locator(".verdict").inner_text()
     assert time.monotonic() - begun < 120  # with every wait; clicking and typing by hand comes on top
-    value = sprung.load(server.folder / "results").parameters["k_sf"].value
-    assert value == pytest.approx(HATCHBACK.k_sf, rel=0.05)  # 5 standard uncertainties of 0.7 % to 1 %
+    estimate = sprung.load(server.folder / "results").parameters["k_sf"]
+    assert estimate.value == pytest.approx(HATCHBACK.k_sf, rel=0.05)  # 5 standard uncertainties of 0.7 % to 1 %
 
 
 def test_an_identification_is_cancelled_and_nothing_is_changed(user: Tabs, server: Served) -> None:

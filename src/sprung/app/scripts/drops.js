@@ -67,7 +67,9 @@ export function setUpRecordings(form, body) {
       const top = detected ? frame.top : frame.bottom;
       svgElement("path", { class: "line", d: `M0 ${frame.top}V${frame.bottom}` }, handle);
       svgElement("path", { class: "grip", d: `M0 ${top - (detected ? 0 : 12)}h${9 * side}v6l${-9 * side} 6z` }, handle);
-      svgElement("rect", { class: "reach", x: -6, y: frame.top, width: 12, height: frame.bottom - frame.top }, handle);
+      // Where two handles lie on each other, those of the part are reached below, those of the decay above.
+      const reach = detected ? [frame.top - 2, frame.bottom - 26] : [frame.bottom - 26, frame.bottom + 4];
+      svgElement("rect", { class: "reach", x: -8, y: reach[0], width: 16, height: reach[1] - reach[0] }, handle);
       const show = () => {
         const time = isStated() ? read() : fallback;
         const x = Math.min(Math.max(across(time), frame.left), frame.left + frame.width);
