@@ -6,11 +6,13 @@ import resource
 import socket
 import time
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack, contextmanager
 
 import pytest
 
 from served import Served, served, wait_for
+from sprung.app.application import LARGEST_BODY
 
 MANY = 1000
 MEMORY = 400.0
@@ -125,3 +127,15 @@ def test_a_client_that_stops_is_disconnected(server: Served) -> None:
         assert no_body.recv(12) == b"HTTP/1.1 400"
         assert 25 < time.monotonic() - begun < 35
     assert not list(server.folder.glob("*slow*"))
+
+
+def test_many_large_forms_at_once_are_read_one_after_the_other(server: Served) -> None:
+    """400 MB of forms, which are read into memory, and several times as much with their fields."""
+    body = b"a=" + b"x" * (LARGEST_BODY - 2)
+    more = f"Content-Length: {len(body)}\r\nContent-Type: application/x-www-form-urlencoded\r\n"
+    with opened(server, 100) as connections, ThreadPoolExecutor(100) as threads:
+        sent = head(server, "/compare", "POST", more) + body
+        list(threads.map(lambda connection: connection.sendall(sent), connections))
+        statuses = [connection.recv(12) for connection in connections]
+    assert set(statuses) == {b"HTTP/1.1 400"}  # a comparison of no results
+    assert server.memory() < MEMORY

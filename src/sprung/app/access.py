@@ -33,6 +33,12 @@ REPORT_POLICY = (
 BODY_PAUSE = 30.0
 """Longest time without a byte of a body, s."""
 
+_LARGE = 100_000
+"""Bytes from which a form counts as large..."""
+
+_LARGE_AT_ONCE = 4
+"""...and number of such forms that are read at the same time; the others wait."""
+
 _HEADERS = {
     b"content-security-policy": PAGE_POLICY.encode(),
     b"x-content-type-options": b"nosniff",
@@ -91,7 +97,8 @@ class Access:
     port
         Port on which the server listens.
     body_limits
-        Largest body of a request in bytes, by the beginning of its path; the longest that fits holds.
+        Largest body of a request in bytes, by the beginning of its path; the longest that fits holds. That of ``/`` is for
+        forms, which are read into memory.
     """
 
     def __init__(self, application: ASGIApp, keys: Keys, port: int, body_limits: Mapping[str, int]) -> None:
@@ -99,6 +106,7 @@ class Access:
         self._keys = keys
         self._hosts = {f"127.0.0.1:{port}".encode(), f"localhost:{port}".encode()}
         self._cookie = f"sprung-{port}"  # cookies do not tell ports apart
+        self._large = asyncio.Semaphore(_LARGE_AT_ONCE)
         self._body_limits = dict(sorted(body_limits.items(), key=lambda item: len(item[0]), reverse=True))
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
@@ -120,6 +128,9 @@ class Access:
             await refuse(send, 403, "Open the address that sprung printed in the terminal; it contains a key.")
         elif (refusal := self._body_refusal(scope, headers)) is not None:
             await refuse(send, *refusal)
+        elif self._is_large(scope, headers):
+            async with self._large:
+                await self._application(scope, _with_deadline(receive), _with_headers(send))
         else:
             await self._application(scope, _with_deadline(receive), _with_headers(send))
 
@@ -158,12 +169,20 @@ class Access:
         target = b"0; url=/" if elsewhere else b"/"
         await _respond(send, status, "sprung opens its page.", {location: target, b"set-cookie": cookie.encode()})
 
+    def _is_large(self, scope: Scope, headers: list[tuple[bytes, bytes]]) -> bool:
+        """Whether a body is large and will be read into memory; uploads are written to the disk."""
+        lengths = _values(headers, b"content-length")
+        return self._limit(scope) == self._body_limits["/"] and bool(lengths) and int(lengths[0]) > _LARGE
+
+    def _limit(self, scope: Scope) -> int:
+        return next(limit for start, limit in self._body_limits.items() if scope["path"].startswith(start))
+
     def _body_refusal(self, scope: Scope, headers: list[tuple[bytes, bytes]]) -> tuple[int, str] | None:
         """Return status and reason if a body is too large or does not state its length, else None."""
         lengths = _values(headers, b"content-length")
         if scope["method"] in _SAFE and not lengths and not _values(headers, b"transfer-encoding"):
             return None
-        limit = next(limit for start, limit in self._body_limits.items() if scope["path"].startswith(start))
+        limit = self._limit(scope)
         if not lengths or _values(headers, b"transfer-encoding"):  # the one that counts is not the length
             return (411, "The request does not state the length of its body.")
         length = int(lengths[0]) if lengths[0].isdigit() and len(lengths[0]) < 20 else limit + 1

@@ -14,28 +14,51 @@ from starlette.types import ASGIApp
 from sprung.app import events, uploads
 from sprung.app.access import Access, Keys
 from sprung.app.jobs import Jobs, TooManyJobsError
-from sprung.app.pages import assets, campaign, comparison, exporting, files, folder, planning, results, riding, running
+from sprung.app.pages import (
+    assets,
+    campaign,
+    comparison,
+    exporting,
+    files,
+    folder,
+    motion,
+    planning,
+    recordings,
+    results,
+    riding,
+    running,
+)
 from sprung.app.pages import jobs as job_pages
+from sprung.app.queries import Queries, QueryError
 from sprung.app.rendering import render, wants_page
 from sprung.app.workspace import ChangedError, OutsideError, Workspace
 from sprung.errors import SprungError
 
-LARGEST_BODY = 8_000_000
-"""Largest body of a form in bytes; a campaign.toml has at most half of it."""
+LARGEST_BODY = 4_000_000
+"""Largest body of a form in bytes: twice the largest campaign.toml, with every character that needs it escaped."""
 
-_PAGES = (assets, folder, campaign, running, files, job_pages, results, comparison, planning, exporting, riding)
+_PAGES = (
+    *(assets, folder, campaign, running, files, job_pages),
+    *(results, comparison, planning, exporting, riding, motion, recordings),
+)
 """Modules with the routes of pages, in the order in which they are matched."""
 
-_STATUS: dict[type[Exception], int] = {OutsideError: 404, ChangedError: 409, TooManyJobsError: 429, SprungError: 400}
+_STATUS: dict[type[Exception], int] = {
+    OutsideError: 404,
+    ChangedError: 409,
+    TooManyJobsError: 429,
+    QueryError: 503,
+    SprungError: 400,
+}
 
 
-def create_application(workspace: Workspace, jobs: Jobs, keys: Keys, port: int) -> ASGIApp:
+def create_application(workspace: Workspace, jobs: Jobs, queries: Queries, keys: Keys, port: int) -> ASGIApp:
     """Return the application.
 
     Parameters
     ----------
-    workspace, jobs
-        In handlers, ``request.app.state.workspace`` and ``request.app.state.jobs``.
+    workspace, jobs, queries
+        In handlers, ``request.app.state.workspace`` and so on.
     keys
         Token and cookie.
     port
@@ -52,6 +75,7 @@ def create_application(workspace: Workspace, jobs: Jobs, keys: Keys, port: int) 
     )
     application.state.workspace = workspace
     application.state.jobs = jobs
+    application.state.queries = queries
     application.state.streams = 0
     application.state.uploads = asyncio.Semaphore(uploads.AT_ONCE)
     return Access(application, keys, port, {"/": LARGEST_BODY, uploads.PATH: uploads.LARGEST})

@@ -38,7 +38,7 @@ async def events(request: Request) -> Response:
         return Response(f"{OPEN} pages follow the jobs already.", 503, {"Retry-After": "5"})
     run, _, number = request.headers.get("last-event-id", "").partition("-")
     wanted = request.query_params.get("job")
-    last = int(number) if run == _RUN and number.isdigit() and len(number) < 16 else 0
+    last = int(number) if run == _RUN and number.isdecimal() and len(number) < 16 else 0
     if wanted is not None and all(job.is_over and job.change <= last for job in state.jobs.all() if job.id == wanted):
         return Response(status_code=204)  # the browser does not connect again
 

@@ -21,7 +21,7 @@ from sprung.files import NO_RECORDINGS
 _MOST_OPENED = 200
 """Most campaign files and results that are opened for what they say, the newest first."""
 
-_LARGEST = 20_000_000
+_LARGEST = 2_000_000
 """Largest results.json that is opened, bytes."""
 
 

@@ -43,7 +43,7 @@ def apply_action(text: str, action: str) -> str:
     kind, _, rest = what.partition(" ")
     document = tomllib.loads(text.removeprefix("\ufeff"))
     if verb == "remove" and what:
-        return apply_changes(text, _removal(tuple(int(part) if part.isdigit() else part for part in what.split("."))))
+        return apply_changes(text, _removal(tuple(int(part) if part.isdecimal() else part for part in what.split("."))))
     if verb == "add" and kind in {"sensor", "load", "drop"}:
         entries = document.get(kind, [])
         number = len(entries) if isinstance(entries, list) else 0
@@ -72,7 +72,7 @@ def _new(kind: str, rest: str, entries: Sequence[Any]) -> str:
 
 def _new_item(document: Mapping[str, Any], load: str) -> Change:
     """Return the change that adds an item to a load; the first one replaces what marks that items are missing."""
-    index = int(load.removeprefix("load.")) if load.removeprefix("load.").isdigit() else -1
+    index = int(load.removeprefix("load.")) if load.removeprefix("load.").isdecimal() else -1
     loads = document.get("load", [])
     if not 0 <= index < len(loads):
         raise InputError([Problem(load, "no such load", "a load of the file", "Load the page again.")])

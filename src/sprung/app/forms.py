@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from urllib.parse import parse_qsl
 
+from starlette.concurrency import run_in_threadpool
 from starlette.exceptions import HTTPException
 from starlette.requests import Request
 
@@ -27,12 +28,16 @@ async def read_form(request: Request) -> Form:
     HTTPException
         400 if it is none.
     """
+    body = await request.body()
     try:
-        text = (await request.body()).decode("utf-8")
-        pairs = parse_qsl(text, keep_blank_values=True, errors="strict", max_num_fields=_MOST_FIELDS)
+        return await run_in_threadpool(_form, body)  # others are answered while a large one is decoded
     except ValueError as error:
         raise HTTPException(400, "The fields of the form cannot be read.") from error
+
+
+def _form(body: bytes) -> Form:
     form = Form()
+    pairs = parse_qsl(body.decode("utf-8"), keep_blank_values=True, errors="strict", max_num_fields=_MOST_FIELDS)
     for name, value in pairs:
         form.setdefault(name, []).append(value.replace("\r\n", "\n"))
     return form

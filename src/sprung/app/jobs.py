@@ -343,7 +343,7 @@ def _process(job: Job, memory: int | None) -> subprocess.Popen[bytes]:
     return subprocess.Popen(  # noqa: S603 (a list of arguments, no shell)
         command,
         cwd=job.folder,
-        env=_environment(),
+        env={**process_environment(), "SPRUNG_PROGRESS": "json", "COLUMNS": "100"},
         stdin=subprocess.PIPE,  # its end tells the process that the server is gone
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
@@ -351,17 +351,14 @@ def _process(job: Job, memory: int | None) -> subprocess.Popen[bytes]:
     )
 
 
-def _environment() -> dict[str, str]:
-    """Return the environment of a job; relative entries of PYTHONPATH refer to the folder in which the server was started."""
+def process_environment() -> dict[str, str]:
+    """Return the environment of a process of the server.
+
+    Relative entries of PYTHONPATH refer to the folder in which the server was started, not to that of the process.
+    """
     paths = [str(Path(entry).resolve()) for entry in os.environ.get("PYTHONPATH", "").split(os.pathsep) if entry]
-    own = {
-        "SPRUNG_PROGRESS": "json",
-        "PYTHONUTF8": "1",
-        "NO_COLOR": "1",
-        "COLUMNS": "100",
-        "PYTHONPATH": os.pathsep.join(paths),
-    }
-    return {**{name: value for name, value in os.environ.items() if name != "FORCE_COLOR"}, **own}
+    kept = {name: value for name, value in os.environ.items() if name != "FORCE_COLOR"}
+    return {**kept, "PYTHONUTF8": "1", "NO_COLOR": "1", "PYTHONPATH": os.pathsep.join(paths)}
 
 
 def _stop(process: subprocess.Popen[bytes]) -> None:

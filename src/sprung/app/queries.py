@@ -7,25 +7,29 @@ from __future__ import annotations
 
 import asyncio
 import json
-import os
-import select
+import queue
 import subprocess
 import sys
 import threading
-import time
+from concurrent.futures import Future
 from contextlib import suppress
-from pathlib import Path
-from typing import IO, Any, Literal, cast
+from typing import IO, Any, Literal, TypeAlias, cast
 
 from starlette.requests import Request
 
+from sprung.app.jobs import process_environment
 from sprung.errors import InputError, Problem, SprungError
 
 Lane = Literal["form", "recording"]
 """Questions about texts do not wait for those about recordings: each lane has a process."""
 
+Answer: TypeAlias = "Future[dict[str, Any]]"
+
 LONGEST = 90.0
 """Longest time that an answer may take, s: a recording of 500 MB is read in a part of it."""
+
+WAITING = 100
+"""Most questions that wait for one process."""
 
 IDLE = 300.0
 """Time without questions after which a process ends, s."""
@@ -61,7 +65,7 @@ class Queries:
             If there is no answer in time, or the process fails.
         """
         request = json.dumps({"question": question, "arguments": arguments})
-        answer = await asyncio.to_thread(self._lanes[lane].ask, request)
+        answer = await asyncio.wrap_future(self._lanes[lane].submit(request))
         if "problems" in answer:
             raise InputError(Problem(**problem) for problem in answer["problems"])
         if "defect" in answer:
@@ -70,7 +74,8 @@ class Queries:
 
     def warm(self, lane: Lane) -> None:
         """Start the process of a lane, if it does not run yet: its first answer then comes sooner."""
-        threading.Thread(target=self._lanes[lane].ask, args=(json.dumps(_WARMING),), daemon=True).start()
+        if not self._lanes[lane].is_warm:
+            self._lanes[lane].submit(json.dumps(_WARMING))
 
     def close(self) -> None:
         """End the processes."""
@@ -82,57 +87,80 @@ _WARMING = {"question": "form_view:ready", "arguments": {}}
 
 
 class _Lane:
-    """One process, which answers one question at a time."""
+    """One process, which answers one question at a time, in the order in which they come; a thread waits for it."""
 
     def __init__(self) -> None:
-        self._lock = threading.Lock()
+        self._questions: queue.SimpleQueue[tuple[str, Answer]] = queue.SimpleQueue()
         self._process: subprocess.Popen[bytes] | None = None
-        self._last = 0.0
+        self._lock = threading.Lock()
+        self._thread: threading.Thread | None = None
 
-    def ask(self, request: str) -> dict[str, Any]:
+    @property
+    def is_warm(self) -> bool:
+        """Whether the process runs, or is about to be started."""
+        process = self._process
+        return (process is not None and process.poll() is None) or not self._questions.empty()
+
+    def submit(self, request: str) -> Answer:
+        """Put a question into the queue; its answer comes later, unless whoever asked has gone meanwhile."""
+        if self._questions.qsize() >= WAITING:
+            raise QueryError(f"{WAITING} questions wait to be answered. Load the page again in a minute.")
+        answer: Answer = Future()
+        self._questions.put((request, answer))
         with self._lock:
-            if self._process is None or self._process.poll() is not None:
-                self._process = _start()
-                threading.Thread(target=self._end_when_idle, args=(self._process,), daemon=True).start()
-            self._last = time.monotonic()
-            try:
-                line = _exchange(self._process, request.encode() + b"\n")
-            except (OSError, QueryError):
-                self._end(self._process)
-                raise
-            self._last = time.monotonic()
-            answer: dict[str, Any] = json.loads(line)
-            return answer
+            if self._thread is None:
+                self._thread = threading.Thread(target=self._work, daemon=True)
+                self._thread.start()
+        return answer
 
     def close(self) -> None:
         process = self._process
         if process is not None:
-            self._end(process)
+            process.kill()
 
-    def _end_when_idle(self, process: subprocess.Popen[bytes]) -> None:
-        while process.poll() is None:
-            time.sleep(IDLE / 10)
-            with self._lock:
-                if time.monotonic() - self._last > IDLE:
-                    self._end(process)
+    def _work(self) -> None:
+        while True:
+            try:
+                request, answer = self._questions.get(timeout=IDLE)
+            except queue.Empty:
+                self._end()
+                continue
+            if answer.set_running_or_notify_cancel():
+                try:
+                    answer.set_result(self._answer(request))
+                except Exception as error:  # noqa: BLE001 (whoever asked has to know it)
+                    answer.set_exception(error)
 
-    def _end(self, process: subprocess.Popen[bytes]) -> None:
-        process.kill()
-        process.wait()
-        for pipe in (process.stdin, process.stdout):
-            with suppress(OSError):
-                if pipe is not None:
-                    pipe.close()
+    def _answer(self, request: str) -> dict[str, Any]:
+        if self._process is None or self._process.poll() is not None:
+            self._end()
+            self._process = _start()
+        try:
+            answer: dict[str, Any] = json.loads(_exchange(self._process, request.encode() + b"\n"))
+        except (OSError, ValueError, QueryError):
+            self._end()
+            raise
+        return answer
+
+    def _end(self) -> None:
+        """End the process, if there is one."""
+        process, self._process = self._process, None
+        if process is not None:
+            process.kill()
+            process.wait()
+            for pipe in (process.stdin, process.stdout):
+                with suppress(OSError):
+                    if pipe is not None:
+                        pipe.close()
 
 
 def _start() -> subprocess.Popen[bytes]:
-    paths = [str(Path(entry).resolve()) for entry in os.environ.get("PYTHONPATH", "").split(os.pathsep) if entry]
     return subprocess.Popen(
         [sys.executable, "-P", "-m", "sprung.app.query_process"],
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         stderr=subprocess.DEVNULL,
-        env={**os.environ, "PYTHONUTF8": "1", "PYTHONPATH": os.pathsep.join(paths)},
+        env=process_environment(),
         start_new_session=True,  # a Ctrl-C in the terminal is the server's
     )
 
@@ -140,27 +168,26 @@ def _start() -> subprocess.Popen[bytes]:
 def _exchange(process: subprocess.Popen[bytes], line: bytes) -> bytes:
     """Write a question and return the line of the answer."""
     questions, answers = cast("IO[bytes]", process.stdin), cast("IO[bytes]", process.stdout)
-    questions.write(line)
-    questions.flush()
-    until, pieces = time.monotonic() + LONGEST, bytearray()
-    while not pieces.endswith(b"\n"):
-        if not select.select([answers], [], [], max(until - time.monotonic(), 0.0))[0]:
-            raise QueryError(
-                f"There was no answer within {LONGEST:.0f} s. Use the command line for recordings of this size."
-            )
-        piece = os.read(answers.fileno(), 1 << 20)
-        if not piece:
-            raise QueryError(
-                "The process that reads the files ended, perhaps for want of memory. Use smaller recordings."
-            )
-        pieces += piece
-    return bytes(pieces)
+    late = threading.Timer(LONGEST, process.kill)
+    late.daemon = True
+    late.start()
+    try:
+        questions.write(line)
+        questions.flush()
+        answer = answers.readline()
+    except BrokenPipeError:
+        answer = b""
+    finally:
+        late.cancel()
+    if answer.endswith(b"\n"):
+        return answer
+    raise QueryError(
+        f"The process that reads the files ended, for want of memory or because it took longer than {LONGEST:.0f} s. "
+        "Use smaller recordings, or the command line."
+    )
 
 
 def queries_of(request: Request) -> Queries:
     """Return the processes of the server that answers a request."""
-    state = request.app.state
-    if not hasattr(state, "queries"):
-        state.queries = Queries()
-    found: Queries = state.queries
+    found: Queries = request.app.state.queries
     return found

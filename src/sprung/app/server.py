@@ -20,6 +20,7 @@ from uvicorn.protocols.http.h11_impl import H11Protocol
 from sprung.app.access import Keys
 from sprung.app.application import create_application
 from sprung.app.jobs import Jobs
+from sprung.app.queries import Queries
 from sprung.app.workspace import Workspace
 from sprung.errors import InputError, Problem
 
@@ -64,10 +65,10 @@ def serve(
     workspace = Workspace(folder)
     with _listen(port) as listening:
         port = listening.getsockname()[1]
-        keys, jobs = Keys(), Jobs()
+        keys, jobs, queries = Keys(), Jobs(), Queries()
         workspace.recover()
         _allow_many_connections()
-        application = create_application(workspace, jobs, keys, port)
+        application = create_application(workspace, jobs, queries, keys, port)
         config = uvicorn.Config(
             application,
             http=_Protocol,
@@ -90,6 +91,7 @@ def serve(
             _Server(config, jobs, listens).run([listening])
         finally:
             jobs.close()
+            queries.close()
 
 
 class _Protocol(H11Protocol):

@@ -22,7 +22,7 @@ from sprung.files import new_token, recover, temporary_path
 NEW = ""
 """Version of a file that does not exist."""
 
-LARGEST_TEXT = 4_000_000
+LARGEST_TEXT = 500_000
 """Largest text file that is read or written, bytes."""
 
 _MOST = 20_000
@@ -212,13 +212,15 @@ class Workspace:
                 else:
                     yield None
 
-    def read_text(self, name: str) -> tuple[str, str]:
+    def read_text(self, name: str, largest: int = LARGEST_TEXT) -> tuple[str, str]:
         """Return the text of a file as it stands there, and its version.
 
         Parameters
         ----------
         name
             Of the file.
+        largest
+            Largest file that is read, bytes.
 
         Returns
         -------
@@ -233,7 +235,7 @@ class Workspace:
             If it is no text file in UTF-8, or too large.
         """
         path = self.path(name)
-        content = _content(path, name)
+        content = _content(path, name, largest)
         try:
             return (content or b"").decode("utf-8"), _version(content)
         except UnicodeDecodeError as error:
@@ -338,20 +340,20 @@ def _is_plain(part: str) -> bool:
     return is_name and not (os.name == "nt" and _UNPORTABLE.search(part))
 
 
-def _content(path: Path, name: str) -> bytes | None:
+def _content(path: Path, name: str, largest: int = LARGEST_TEXT) -> bytes | None:
     """Return the content of a text file; None if there is none."""
     try:
         if path.exists() and not path.is_file():  # opening a pipe would wait for its other end
             raise OSError(0, "a folder or a device")
         with path.open("rb") as file:
-            content = file.read(LARGEST_TEXT + 1)
+            content = file.read(largest + 1)
     except FileNotFoundError:
         return None
     except OSError as error:
         found = f"a file that cannot be read ({error.strerror or error})"
         raise InputError([Problem(name, found, "a text file", "Check its permissions.")]) from error
-    if len(content) > LARGEST_TEXT:
-        found = f"more than {LARGEST_TEXT} bytes"
+    if len(content) > largest:
+        found = f"more than {largest} bytes"
         raise InputError([Problem(name, found, "a text file such as campaign.toml", "Choose another file.")])
     return content
 

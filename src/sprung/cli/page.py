@@ -13,7 +13,7 @@ from sprung.cli.output import complain, say, say_json
 from sprung.cli.signals import Terminated
 from sprung.errors import InputError, Problem
 
-_LIBRARIES = ("starlette", "uvicorn", "tomlkit")
+_LIBRARIES = ("starlette", "uvicorn")
 """What the page needs besides what every command needs."""
 
 

@@ -120,7 +120,7 @@ async def drop(request: Request) -> Response:
         root=str(workspace.folder),
         text=_carried(form, "base"),
         entered=_inputs(form),
-        index=int(index) if index.isdigit() and len(index) < 6 else -1,
+        index=int(index) if index.isdecimal() and len(index) < 6 else -1,
     )
     return JSONResponse(found)
 

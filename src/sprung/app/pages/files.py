@@ -11,8 +11,8 @@ from starlette.routing import Route
 
 from sprung.app.access import REPORT_POLICY
 
-_SHOWN = {".html": "text/html; charset=utf-8", ".svg": "image/svg+xml", ".png": "image/png", ".pdf": "application/pdf"}
-"""Kinds of files that a browser shows; all others are downloaded."""
+_SHOWN = {".html": "text/html; charset=utf-8", ".svg": "image/svg+xml", ".png": "image/png"}
+"""Kinds of files that a browser shows; all others are downloaded, also PDF, which browsers do not show in a sandbox."""
 
 
 def file(request: Request) -> Response:

@@ -17,6 +17,10 @@ from sprung.app.jobs import Job
 from sprung.app.pages.folder import date_text
 from sprung.app.tool_pages import required, show_tool
 from sprung.app.workspace import Workspace
+from sprung.errors import InputError
+
+_LARGEST = 2_000_000
+"""Largest results.json that is opened for its verdict, bytes."""
 
 _TITLES = {"check": "Check", "identify": "Identify"}
 
@@ -120,9 +124,9 @@ def _sources(workspace: Workspace, name: str) -> list[Any]:
 def _result_in(workspace: Workspace, folder: str) -> dict[str, Any] | None:
     """Return the verdict of the result in a folder; None where there is none."""
     try:
-        document = json.loads(workspace.path(_inside(folder, "results.json")).read_text(encoding="utf-8"))
+        document = json.loads(workspace.read_text(_inside(folder, "results.json"), _LARGEST)[0])
         return {"verdict": str(document["verdict"]["state"])}
-    except (OSError, ValueError, LookupError, TypeError):
+    except (InputError, ValueError, LookupError, TypeError, RecursionError):
         return None
 
 
