@@ -24,6 +24,7 @@ from sprung.report.page.summary import VerdictText, verdict_text
 from sprung.report.pictures.amplitudes import amplitude_pictures
 from sprung.report.pictures.channels import channels_picture
 from sprung.report.pictures.curves import curve_pictures
+from sprung.report.pictures.damper_clouds import damper_cloud_pictures
 from sprung.report.pictures.decays import LoadDecays, decays_by_load
 from sprung.report.pictures.fleets import fleet_pictures
 from sprung.report.pictures.motions import motion_picture
@@ -32,7 +33,7 @@ from sprung.report.pictures.recordings import landing_picture, recording_picture
 from sprung.report.pictures.spectra import spectra_picture
 from sprung.report.pictures.stability import stability_picture
 from sprung.report.pictures.transmissibility import transmissibility_picture
-from sprung.report.pictures.wire_frame import BODY_EDGES, STRUTS, wire_frame
+from sprung.report.pictures.wire_frame import BODY_EDGES, HUBS, STRUTS, SolidFrame, solid_frame, wire_frame
 from sprung.report.sketch.shapes import Disc, Drawing, Stroke, TextShape
 from sprung.report.sketch.sheet import blank_sketch, sketch_sheet
 from sprung.report.sketch.sketch import VehicleSketch, vehicle_sketch
@@ -54,6 +55,7 @@ __all__ = [
     "BODY_EDGES",
     "CHECK_FILE",
     "FLEET_FILE",
+    "HUBS",
     "LIGHT",
     "REPORT_FILES",
     "RESULT_FILES",
@@ -69,6 +71,7 @@ __all__ = [
     "Points",
     "Rule",
     "SavedResult",
+    "SolidFrame",
     "Stroke",
     "TextShape",
     "VehicleSketch",
@@ -81,6 +84,7 @@ __all__ = [
     "check_view",
     "comparison_view",
     "curve_pictures",
+    "damper_cloud_pictures",
     "decays_by_load",
     "draft_view",
     "draw_check",
@@ -107,6 +111,7 @@ __all__ = [
     "save_result",
     "sketch_sheet",
     "sketch_svg",
+    "solid_frame",
     "spectra_picture",
     "stability_picture",
     "text_of",
