@@ -54,6 +54,8 @@ export function setUpRecordings(form, body) {
   function addHandles(details, svg, found) {
     const group = details.closest("fieldset").id;
     const { frame, limits, times } = found;
+    const [, , width, height] = svg.getAttribute("viewBox").split(" ").map(Number);
+    svg.setAttribute("viewBox", `0 -16 ${width} ${height + 16}`); // room for the grips
     const across = (time) => frame.left + frame.width * (time - frame.low) / (frame.high - frame.low);
     const handles = [["start", "Free decay from", "start"], ["end", "Free decay to", "end"], ["window.0", "Part of the recording, from", ""], ["window.1", "Part of the recording, to", ""]];
     for (const [key, label, detected] of handles) {
@@ -64,11 +66,10 @@ export function setUpRecordings(form, body) {
       const fallback = detected ? times[DETECTED[detected]] ?? limits[key === "end" ? 1 : 0] : limits[key === "window.1" ? 1 : 0];
       const handle = svgElement("g", { class: `handle ${detected ? "decay" : "window"}`, tabindex: "0", role: "slider", "aria-valuemin": limits[0].toFixed(3), "aria-valuemax": limits[1].toFixed(3) }, svg);
       const side = key === "end" || key === "window.1" ? -1 : 1;
-      const top = detected ? frame.top : frame.bottom;
       svgElement("path", { class: "line", d: `M0 ${frame.top}V${frame.bottom}` }, handle);
-      svgElement("path", { class: "grip", d: `M0 ${top - (detected ? 0 : 12)}h${9 * side}v6l${-9 * side} 6z` }, handle);
+      svgElement("path", { class: "grip", d: detected ? `M0 ${frame.top}v-14h${9 * side}v7z` : `M0 ${frame.bottom}v-14h${9 * side}v7z` }, handle);
       // Where two handles lie on each other, those of the part are reached below, those of the decay above.
-      const reach = detected ? [frame.top - 2, frame.bottom - 26] : [frame.bottom - 26, frame.bottom + 4];
+      const reach = detected ? [frame.top - 15, frame.bottom - 26] : [frame.bottom - 26, frame.bottom + 4];
       svgElement("rect", { class: "reach", x: -8, y: reach[0], width: 16, height: reach[1] - reach[0] }, handle);
       const show = () => {
         const time = isStated() ? read() : fallback;

@@ -15,8 +15,17 @@ function show(panel, job) {
   const bar = part(panel, "progress");
   if (job.done === null || job.done === undefined) bar.removeAttribute("value");
   else bar.value = job.done;
+  part(panel, "left").textContent = over(job.state) ? "" : remaining(panel, job);
   part(panel, "cancel").hidden = over(job.state);
   if (over(job.state) && !over(before)) end(panel, job);
+}
+
+// As in a terminal: from the part of the stage that is done, once it has taken two seconds.
+function remaining(panel, job) {
+  if (panel.dataset.stage !== job.stage) { panel.dataset.stage = job.stage ?? ""; panel.dataset.since = job.elapsed ?? 0; }
+  const inStage = (job.elapsed ?? 0) - Number(panel.dataset.since);
+  if (!job.done || job.done >= 1 || inStage < 2) return "";
+  return `about ${clock(inStage * (1 - job.done) / job.done)} more`;
 }
 
 const clock = (seconds) => `${Math.floor(seconds / 60)}:${String(Math.floor(seconds % 60)).padStart(2, "0")} min`;
@@ -38,6 +47,17 @@ async function fetchAll(panel) {
   show(panel, job);
 }
 
+// An event tells the last step only: the list is fetched once a second at most, while it is open.
+function later(panel) {
+  if (panel.dataset.fetching || !part(panel, "steps").closest("details").open) return;
+  panel.dataset.fetching = "yes";
+  setTimeout(async () => {
+    await fetchAll(panel);
+    delete panel.dataset.fetching;
+    part(panel, "steps").scrollTop = part(panel, "steps").scrollHeight;
+  }, 1000);
+}
+
 async function end(panel, job) {
   document.querySelector("#announcements").textContent = `${job.title}: ${job.state}`;
   if (panel.dataset.next) location.assign(panel.dataset.next);
@@ -54,17 +74,10 @@ function follow() {
   source.addEventListener("job", (event) => {
     const job = JSON.parse(event.data);
     const own = panels.filter((panel) => panel.dataset.job === job.id);
-    own.forEach((panel) => {
+    for (const panel of own) {
       show(panel, job);
-      const steps = part(panel, "steps");
-      if (job.step && steps.lastElementChild?.textContent !== job.step) {
-        const line = document.createElement("li");
-        line.textContent = job.step;
-        steps.append(line);
-        part(panel, "count").textContent = steps.children.length;
-        steps.scrollTop = steps.scrollHeight;
-      }
-    });
+      later(panel);
+    }
     if (own.length) follow();
   });
 }
