@@ -313,6 +313,8 @@ def _field(group: Place, spec: Spec, entry: Mapping[str, Any], source: _Source) 
         stated = node if isinstance(node, list) else source.wheels if spec.key == "wheels" and not missing else ()
         chosen = tuple(word for word in stated if isinstance(word, str))
     choices = restricted(spec, source.wheels)
+    if (group[0], spec.key) == ("sensor", "position") and entry.get("on", "body") != "body":
+        spec = replace(spec, rare=True)  # only sensors on the body have one
     if (group[0], spec.key) == ("drop", "load"):
         spec, choices = replace(spec, kind="choice"), tuple(source.loads)
     if spec.kind == "choice" and isinstance(node, str) and node not in choices:

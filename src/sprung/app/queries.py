@@ -23,7 +23,7 @@ from sprung.errors import InputError, Problem, SprungError
 Lane = Literal["form", "recording"]
 """Questions about texts do not wait for those about recordings: each lane has a process."""
 
-Answer: TypeAlias = "Future[dict[str, Any]]"
+PendingAnswer: TypeAlias = "Future[dict[str, Any]]"
 
 LONGEST = 90.0
 """Longest time that an answer may take, s: a recording of 500 MB is read in a part of it."""
@@ -90,7 +90,7 @@ class _Lane:
     """One process, which answers one question at a time, in the order in which they come; a thread waits for it."""
 
     def __init__(self) -> None:
-        self._questions: queue.SimpleQueue[tuple[str, Answer]] = queue.SimpleQueue()
+        self._questions: queue.SimpleQueue[tuple[str, PendingAnswer]] = queue.SimpleQueue()
         self._process: subprocess.Popen[bytes] | None = None
         self._lock = threading.Lock()
         self._thread: threading.Thread | None = None
@@ -101,11 +101,11 @@ class _Lane:
         process = self._process
         return (process is not None and process.poll() is None) or not self._questions.empty()
 
-    def submit(self, request: str) -> Answer:
+    def submit(self, request: str) -> PendingAnswer:
         """Put a question into the queue; its answer comes later, unless whoever asked has gone meanwhile."""
         if self._questions.qsize() >= WAITING:
             raise QueryError(f"{WAITING} questions wait to be answered. Load the page again in a minute.")
-        answer: Answer = Future()
+        answer: PendingAnswer = Future()
         self._questions.put((request, answer))
         with self._lock:
             if self._thread is None:

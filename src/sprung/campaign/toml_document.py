@@ -61,6 +61,9 @@ def parse_toml(text: str, path: Path) -> dict[str, Any]:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise InputError([_syntax_problem(path, text, str(error))]) from None
+    except RecursionError:
+        found, do = "lists or tables in each other, thousands deep", "Write the file as `sprung demo` does."
+        raise InputError([Problem(path.name, found, "a campaign file or vehicle file", do)]) from None
 
 
 def _syntax_problem(path: Path, text: str, message: str) -> Problem:

@@ -46,7 +46,7 @@ function show(found) {
     if (own?.missing) gap.textContent = `To be filled in: ${own.missing}`;
     field.classList.toggle("missing", Boolean(own?.missing));
     field.querySelectorAll("[aria-invalid]").forEach((input) => input.setAttribute("aria-invalid", String(problems.length > 0)));
-    if (problems.length) field.closest("details.more")?.setAttribute("open", "");
+    if (problems.length || own?.missing) field.closest("details.more")?.setAttribute("open", "");
   }
   const where = Object.entries(found.fields).map(([name, each]) => {
     const line = document.createElement("li");
