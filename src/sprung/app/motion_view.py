@@ -19,7 +19,7 @@ from sprung.report import (
     picture_svg,
     solid_frame,
 )
-from sprung.results import Result, damper_points, fitted_motion
+from sprung.results import DamperPoints, Result, damper_points, fitted_motion
 from sprung.vehicle import layout_of
 
 _RATE = 250.0
@@ -133,7 +133,7 @@ def drop_motion(folder: str, drop: str) -> dict[str, Any]:
     how = (
         "free decay of the identified vehicle"
         if found.is_linear
-        else f"integrated from the fitted readings, which differ by {100 * found.deviation:.1f} % from those of a linear vehicle"
+        else f"integrated from the fitted readings; they differ by {100 * found.deviation:.1f} % from those of a linear vehicle"
     )
     return {
         "time": np.round(found.time[::every], 4).tolist(),
@@ -156,7 +156,7 @@ def dampers(folder: str, drop: str = "") -> dict[str, Any]:
     Returns
     -------
     dict
-        ``pictures``, SVG elements, and ``rows``, what is known of each drop and wheel in words.
+        ``pictures``: SVG elements, one for each axle.
 
     Raises
     ------
@@ -164,7 +164,8 @@ def dampers(folder: str, drop: str = "") -> dict[str, Any]:
         If the forces of no drop are determined.
     """
     result: Result = load_result(folder, series=True)
-    points, refused = [], None
+    points: list[DamperPoints] = []
+    refused: InputError | None = None
     for name in [drop] if drop else list(result.series):
         try:
             points += damper_points(result, name)

@@ -8,7 +8,7 @@ const { results, name: vehicle } = canvas.dataset;
 const announce = (text) => { document.querySelector("#announcements").textContent = text; };
 const LARGEST = 0.13; // rise that a motion is enlarged to, in wheelbases
 const FRAMES = 240; // of an animated file, at most
-const STILL = [1200, 750]; // pixels of what is saved
+const STILL = [1200, 750], MOVING = [800, 500]; // pixels of what is saved
 const PER_SECOND = 25; // pictures of an animated file per second
 
 let scene = null, motion = null, playing = false, at = 0, last = 0;
@@ -107,8 +107,8 @@ async function choose() {
 }
 
 // Saved pictures are on white, in the colours of paper, whatever the screen shows.
-async function png(time) {
-  const [width, height] = STILL, picture = Object.assign(document.createElement("canvas"), { width, height });
+async function png(time, [width, height]) {
+  const picture = Object.assign(document.createElement("canvas"), { width, height });
   const before = at;
   at = time;
   draw(picture.getContext("2d", { alpha: false }), width, height, scene, camera, risesAt(time), paper(), caption());
@@ -132,7 +132,7 @@ async function saveAnimation() {
   const count = Math.min(Math.max(wanted, 12), FRAMES);
   const frames = [];
   for (let i = 0; i < count; i++) {
-    frames.push(new Uint8Array(await (await png(motion.start + (length * i) / (motion.repeats ? count : count - 1))).arrayBuffer()));
+    frames.push(new Uint8Array(await (await png(motion.start + (length * i) / (motion.repeats ? count : count - 1), MOVING)).arrayBuffer()));
     button.textContent = `Picture ${i + 1} of ${count}`;
   }
   offer(animatedPng(frames, (1000 * length) / speed() / count), "animated.png");
@@ -193,7 +193,7 @@ function listen() {
     at = motion.start + Number(field("time").value) * (motion.end - motion.start);
     show();
   });
-  field("still").addEventListener("click", async () => offer(await png(at), "png"));
+  field("still").addEventListener("click", async () => offer(await png(at, STILL), "png"));
   field("animation").addEventListener("click", saveAnimation);
   field("damper-drop").addEventListener("change", dampers);
   new ResizeObserver(show).observe(canvas);

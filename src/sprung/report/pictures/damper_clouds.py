@@ -37,7 +37,8 @@ def damper_cloud_pictures(result: Result, points: Sequence[DamperPoints]) -> tup
     Returns
     -------
     tuple of Picture
-        N over m/s: every so many samples as points, and the curve of the model with its 95 % band over the same velocities.
+        N over m/s: every so many samples as points, and the curve of the model with its 95 % band over the same velocities;
+        below, what the points differ from it.
     """
     axles = dict.fromkeys(STATIONS[one.wheel].axle for one in points)
     return tuple(_picture(result, axle, [one for one in points if STATIONS[one.wheel].axle == axle]) for axle in axles)
@@ -49,26 +50,32 @@ def _picture(result: Result, axle: str, points: Sequence[DamperPoints]) -> Pictu
     x = np.linspace(velocity.min(), velocity.max(), _LINE)
     curve, band = _curve(result, axle, x)
     noise = float(np.sqrt(np.mean([one.noise**2 for one in points])))
-    beyond = float(np.sqrt(np.mean(np.concatenate([one.force - one.model for one in points]) ** 2)))
+    apart = np.concatenate([one.force - one.model for one in points])
+    beyond = float(np.sqrt(np.mean(apart**2)))
     name = f"{_AXLES[axle]} dampers".strip()
     shown = (
         Rule(0.0, "reference", horizontal=True),
         Rule(0.0, "reference"),
-        Points(velocity[::every], force[::every], "measured", "measured accelerations", size=0.35),
+        Points(velocity[::every], force[::every], "measured", "measured accelerations", size=0.4),
         Curve(x, curve, "simulated", "model, 95 % band", 1.6, band=band),
     )
-    panel = Panel(
-        Axis("force, N", *axis_limits(force, curve)),
-        shown,
-        height=2.3,
-        note=f"points about the curve: {beyond:.2g} N rms, by noise {noise:.2g} N",
+    panel = Panel(Axis("force, N", *axis_limits(force, curve)), shown, height=2.1)
+    below = Panel(
+        Axis("points minus model, N", *axis_limits(apart, band, -band)),
+        (
+            Rule(0.0, "reference", horizontal=True),
+            Points(velocity[::every], apart[::every], "residual", size=0.4),
+            Curve(x, np.zeros(_LINE), "simulated", width=1.6, band=band),
+        ),
+        height=0.9,
+        note=f"{beyond:.2g} N rms, each uncertain by {noise:.2g} N",
     )
     across = Axis("velocity (rebound positive), m/s", *axis_limits(velocity, margin=0.02))
     description = (
-        f"Force of the {name} over velocity from {x[0]:.2g} to {x[-1]:.2g} m/s: the model from {curve[0]:.0f} to {curve[-1]:.0f} N, "
-        f"the points deviate from it by {beyond:.2g} N root-mean-square, of which noise accounts for {noise:.2g} N."
+        f"Force of the {name} over velocity from {x[0]:.2g} to {x[-1]:.2g} m/s: the model from {curve[0]:.0f} to "
+        f"{curve[-1]:.0f} N; the points deviate from it by {beyond:.2g} N root-mean-square, each uncertain by {noise:.2g} N."
     )
-    return Picture(name.capitalize(), across, (panel,), description)
+    return Picture(name.capitalize(), across, (panel, below), description)
 
 
 def _curve(result: Result, axle: str, velocity: Real) -> tuple[Real, Real]:
