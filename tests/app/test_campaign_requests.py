@@ -26,7 +26,7 @@ position = [0.10, 0.58, 0.50]
 file = "empty_bounce.csv"
 wheels = ["fl", "fr", "rl", "rr"]
 [[drop]]
-file = "../elsewhere.csv"
+file = "../../elsewhere.csv"
 """
 
 

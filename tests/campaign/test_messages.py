@@ -168,7 +168,7 @@ def test_text_that_is_not_utf8_is_named_by_its_line(folder: Folder) -> None:
 
 def test_lists_in_each_other_are_no_defect_of_the_program(folder: Folder) -> None:
     path = folder(("wheelbase = 2.76", "wheelbase = " + "[" * 5000 + "]" * 5000))
-    with pytest.raises(InputError, match="campaign.toml: found lists or tables in each other, thousands deep"):
+    with pytest.raises(InputError, match=r"campaign\.toml: found lists or tables in each other, thousands deep"):
         read(path)
 
 
