@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import http.client
 import socket
 from collections.abc import Iterator
 from pathlib import Path
@@ -132,3 +133,20 @@ def test_what_a_killed_server_left_is_removed_by_the_next(tmp_path: Path) -> Non
     assert len(list(tmp_path.iterdir())) == 1
     with served(tmp_path):
         assert list(tmp_path.iterdir()) == []
+
+
+def test_a_recording_of_500_mb_goes_to_the_disk_and_not_into_memory(server: Served, tmp_path: Path) -> None:
+    large = tmp_path / "large.csv"
+    with large.open("wb") as file:
+        file.truncate(500_000_000)
+    before = server.memory()
+    connection = http.client.HTTPConnection("127.0.0.1", server.port, timeout=60)
+    with large.open("rb") as content:
+        headers = {"Cookie": server.cookie, "Origin": server.origin, "Content-Length": "500000000"}
+        connection.request("PUT", "/upload/large.csv", content, headers)
+        answer = connection.getresponse()
+    assert (answer.status, answer.read()) == (201, b'{"name":"large.csv","size":500000000}')
+    connection.close()
+    assert (server.folder / "large.csv").stat().st_size == 500_000_000
+    assert server.memory() < before + 50
+    (server.folder / "large.csv").unlink()
