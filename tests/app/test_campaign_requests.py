@@ -71,6 +71,9 @@ def test_names_are_no_markup_and_the_file_is_carried_byte_by_byte(server: Served
     assert "<b>" not in page
     assert 'value="&lt;b&gt;&amp;amp;"' in page
     assert carried(page, "base").encode() == file.read_bytes()
+    assert "../../elsewhere.csv leads out of the folder work" in page
+    check = server.ask("/check?campaign=car/campaign.toml")
+    assert (check.status, "leads out of the folder" in check.text) == (404, True)
 
 
 def test_only_what_was_entered_is_written(server: Served, file: Path) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import json
+import shlex
 from collections.abc import Mapping
 from typing import Any
 from urllib.parse import urlencode
@@ -19,7 +20,7 @@ from sprung.app.forms import Form, read_form
 from sprung.app.queries import queries_of
 from sprung.app.rendering import render
 from sprung.app.tool_pages import required
-from sprung.app.workspace import NEW, ChangedError, Workspace
+from sprung.app.workspace import NEW, ChangedError, OutsideError, Workspace
 from sprung.errors import InputError, Problem
 
 
@@ -225,7 +226,11 @@ def _page(
     **context: Any,
 ) -> Response:
     workspace = request.app.state.workspace
-    commands = [as_typed(arguments(workspace, command, name)) for command in ("check", "identify", "plan")]
+    commands, outside = [f"$EDITOR {shlex.quote(name)}"], ""
+    try:
+        commands += [as_typed(arguments(workspace, command, name)) for command in ("check", "identify", "plan")]
+    except OutsideError as error:  # it can be mended here, but not be run
+        outside = str(error)
     return render(
         request,
         template,
@@ -236,7 +241,8 @@ def _page(
         original=json.dumps(original),
         text=text,
         diff=_difference(original, text),
-        lines=[f"$EDITOR {name}", *commands],
+        lines=commands,
+        outside=outside,
         saved="saved" in request.query_params,
         **context,
     )
