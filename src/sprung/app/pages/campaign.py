@@ -15,7 +15,7 @@ from starlette.requests import Request
 from starlette.responses import JSONResponse, RedirectResponse, Response
 from starlette.routing import Route
 
-from sprung.app.commands import arguments, as_typed, check_sources
+from sprung.app.commands import arguments, as_typed
 from sprung.app.forms import Form, read_form
 from sprung.app.queries import queries_of
 from sprung.app.rendering import render
@@ -111,7 +111,6 @@ async def drop(request: Request) -> Response:
     """Answer with the picture of one drop's recording."""
     name = required(request, "campaign")
     workspace: Workspace = request.app.state.workspace
-    check_sources(workspace, name)
     form = await read_form(request)
     index = required(request, "drop")
     found = await queries_of(request).ask(
