@@ -210,10 +210,11 @@ def _time_at(table: SampleTable, sample: int) -> float:
 
 
 def _range(table: SampleTable, low: float, high: float) -> tuple[int, int]:
-    """Return the samples in a range of time: the first, and the one after the last."""
+    """Return the samples in a range of time, its ends included: the first, and the one after the last."""
     if isinstance(table.clock, np.ndarray):
-        first, last = np.searchsorted(table.clock, [low, high], side="left").tolist()
-        return int(first), int(min(last + 1, table.samples))
+        near = 1e-6 * (_time_at(table, table.samples - 1) - _time_at(table, 0)) / max(table.samples - 1, 1)
+        first = int(np.searchsorted(table.clock, low - near, side="left"))
+        return first, max(first, int(np.searchsorted(table.clock, high + near, side="right")))
     first = int(np.clip(np.ceil(low * table.clock - 1e-6), 0, table.samples))
     return first, int(np.clip(np.floor(high * table.clock + 1e-6) + 1, first, table.samples))
 

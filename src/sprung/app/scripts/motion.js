@@ -7,7 +7,7 @@ const field = (name) => document.querySelector(`#${name}`);
 const { results, name: vehicle } = canvas.dataset;
 const announce = (text) => { document.querySelector("#announcements").textContent = text; };
 const LARGEST = 0.13; // rise that a motion is enlarged to, in wheelbases
-const FRAMES = 240; // of an animated file, at most
+const FRAMES = 120; // of an animated file, at most
 const STILL = [1200, 750], MOVING = [800, 500]; // pixels of what is saved
 const PER_SECOND = 25; // pictures of an animated file per second
 
