@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from command_line import run
+from served import served
 from sprung.app import commands
 from sprung.app.workspace import OutsideError, Workspace
 
@@ -80,3 +81,18 @@ def test_a_recording_beside_the_campaign_is_permitted(workspace: Workspace) -> N
     assert commands.arguments(workspace, "check", "car/campaign.toml") == ("check", "car/campaign.toml")
     (workspace.folder / "car" / "campaign.toml").write_text("[[drop]\nno TOML")
     assert commands.arguments(workspace, "check", "car") == ("check", "car")  # the command says what is wrong
+
+
+def test_a_recording_of_several_files_is_read_without_links_that_lead_out(tmp_path: Path) -> None:
+    folder = tmp_path / "work"
+    folder.mkdir()
+    (folder / "a.mme").write_text("")
+    (tmp_path / "secret").write_text("secret")
+    form = {"Content-Type": "application/x-www-form-urlencoded"}
+    with served(folder) as server:
+        (folder / "a.001").symlink_to(tmp_path / "secret")
+        assert "leads out" in server.ask("/recordings/channels?file=a.mme").text
+        assert server.ask("/campaign?campaign=a.mme").status == 400
+        saved = server.ask("/campaign?campaign=a.mme", "POST", b"text=x&version=&original=%22%22&action=save", form)
+        assert saved.status == 400
+    assert (folder / "a.mme").read_text() == ""

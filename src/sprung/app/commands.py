@@ -117,10 +117,8 @@ def check_sources(workspace: Workspace, name: str) -> None:
     OutsideError
         If a file that the campaign names, or a link in the folder, leads out.
     """
+    check_links(workspace, name)
     path = workspace.path(name)
-    folder = path if path.is_dir() else path.parent
-    for link in workspace.listing(workspace.name(folder)).links_out:
-        raise _outside(workspace, link)
     file = path / "campaign.toml" if path.is_dir() else path
     if file.suffix != ".toml":
         return
@@ -132,6 +130,27 @@ def check_sources(workspace: Workspace, name: str) -> None:
     for recording in _files(document):
         if not _is_inside(workspace, file.parent / recording):
             raise _outside(workspace, f"{workspace.name(file)}: {recording}")
+
+
+def check_links(workspace: Workspace, name: str) -> None:
+    """Check that no link in a folder, or beside a file, leads out: a recording may consist of several files.
+
+    Parameters
+    ----------
+    workspace
+        The folder of the page.
+    name
+        A file or folder in it.
+
+    Raises
+    ------
+    OutsideError
+        If one does.
+    """
+    path = workspace.path(name)
+    folder = path if path.is_dir() else path.parent
+    for link in workspace.listing(workspace.name(folder)).links_out:
+        raise _outside(workspace, link)
 
 
 def _is_inside(workspace: Workspace, path: Path) -> bool:

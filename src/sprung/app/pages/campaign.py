@@ -27,7 +27,7 @@ from sprung.errors import InputError, Problem
 async def show(request: Request) -> Response:
     """Answer with the page of a campaign file, as its form or as text."""
     workspace: Workspace = request.app.state.workspace
-    name = required(request, "campaign")
+    name = _campaign(request)
     text, version = workspace.read_text(name)
     if version == NEW:
         raise HTTPException(404, f"There is no file {name}. Draft it from the recordings on the page of the folder.")
@@ -43,7 +43,7 @@ async def show(request: Request) -> Response:
 async def change(request: Request) -> Response:
     """Save what was entered, or show the form again with what a button added or removed."""
     workspace: Workspace = request.app.state.workspace
-    name = required(request, "campaign")
+    name = _campaign(request)
     form = await read_form(request)
     action, version, original = form.text("action") or "save", form.text("version"), _carried(form, "original")
     if "text" in form:
@@ -69,7 +69,7 @@ async def change(request: Request) -> Response:
 
 async def live(request: Request) -> Response:
     """Answer with the problems, gaps and sketch of what was entered, without saving it."""
-    name = required(request, "campaign")
+    name = _campaign(request)
     form = await read_form(request)
     original = _carried(form, "original")
     path = str(request.app.state.workspace.path(name))
@@ -109,7 +109,7 @@ async def live(request: Request) -> Response:
 
 async def drop(request: Request) -> Response:
     """Answer with the picture of one drop's recording."""
-    name = required(request, "campaign")
+    name = _campaign(request)
     workspace: Workspace = request.app.state.workspace
     form = await read_form(request)
     index = required(request, "drop")
@@ -123,6 +123,14 @@ async def drop(request: Request) -> Response:
         index=int(index) if index.isdecimal() and len(index) < 6 else -1,
     )
     return JSONResponse(found)
+
+
+def _campaign(request: Request) -> str:
+    """Return the name of the campaign file; no recording can be opened, or overwritten, as one."""
+    name = required(request, "campaign")
+    if not name.endswith(".toml"):
+        raise HTTPException(400, f"{name} is no campaign file, whose name ends in .toml.")
+    return name
 
 
 async def _change_text(request: Request, name: str, form: Form, action: str, version: str, original: str) -> Response:

@@ -11,6 +11,7 @@ from starlette.requests import Request
 from starlette.responses import JSONResponse, Response
 from starlette.routing import Route
 
+from sprung.app.commands import check_links
 from sprung.app.folder_content import folder_content
 from sprung.app.forms import read_form
 from sprung.app.queries import queries_of
@@ -72,6 +73,8 @@ async def visible_csv(request: Request) -> Response:
 
 def _path(request: Request, name: str) -> str:
     path = request.app.state.workspace.path(name)
+    if path.suffix.lower() in {".mme", ".chn"}:  # the channels are in files of their own beside it
+        check_links(request.app.state.workspace, name)
     if not path.is_file():
         raise HTTPException(404, f"There is no file {name}.")
     return str(path)
