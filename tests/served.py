@@ -58,11 +58,12 @@ class Served:
         method: str = "GET",
         body: bytes | None = None,
         headers: Mapping[str, str] | None = None,
+        timeout: float = 30,
     ) -> Answer:
         """Send a request as a page of the app would; a header with an empty value is left out."""
         own = {"Cookie": self.cookie, "Origin": self.origin if method not in {"GET", "HEAD"} else ""}
         sent = {name: value for name, value in {**own, **(headers or {})}.items() if value}
-        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=30)
+        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=timeout)
         try:
             connection.request(method, path, body, sent)
             answer = connection.getresponse()

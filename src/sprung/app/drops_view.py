@@ -16,6 +16,9 @@ from sprung.errors import InputError, Problem
 from sprung.preprocess import prepare
 from sprung.report import picture_frame, picture_svg, recording_picture
 
+LARGE = 100_000_000
+"""Size of a file, bytes, beyond which it is read once: the part of it that is stated for the drop is drawn, not all of it."""
+
 _OF_READING = ("channel", "on", "quantity", "axis", "relative_to", "unit", "direction", "range", "high_pass", "logger")
 """Keys of a sensor on which its recording depends; what else is still wrong or missing does not matter here."""
 
@@ -58,8 +61,8 @@ def drop_view(path: str, root: str, text: str, entered: Mapping[str, Sequence[st
     drop = {key: value for key, value in drops[index].items() if key in _OF_DROP}
     _require_inside(drop, place, Path(root))
     whole = {key: value for key, value in drop.items() if key not in {"window", "start", "end"}}
-    shown = _check(document, whole, place)
-    detected = _check(document, drop, place) if drop != whole else shown
+    detected = _check(document, drop, place)
+    shown = detected if drop == whole or _is_large(drop, place) else _check(document, whole, place)
     report = replace(detected.drops[0], channels=shown.drops[0].channels)
     picture = recording_picture(report, shown.recorded[0])
     times = {"release": report.release, "landing": report.landing, "start": report.start, "end": report.end}
@@ -71,6 +74,12 @@ def drop_view(path: str, root: str, text: str, entered: Mapping[str, Sequence[st
         "limits": [float(recorded[0]), float(recorded[-1])],
         "facts": _facts(detected),
     }
+
+
+def _is_large(drop: Mapping[str, Any], path: Path) -> bool:
+    """Whether the recording takes so long to read that only the stated part of it is shown."""
+    file = drop.get("file")
+    return isinstance(file, str) and (path.parent / file).stat().st_size > LARGE
 
 
 def _check(document: Mapping[str, Any], drop: Mapping[str, Any], path: Path) -> Check:

@@ -18,6 +18,8 @@ export function setUpRecordings(form, body) {
   async function draw(details) {
     const place = details.querySelector(".drawn");
     place.setAttribute("aria-busy", "true");
+    const waits = place.querySelector(".subdued");
+    if (waits) waits.textContent = "Reading the recording …";
     const address = `${form.getAttribute("action").replace("/campaign?", "/campaign/drop?")}&drop=${details.dataset.drop}`;
     const answer = await fetch(address, { method: "POST", body: body() }).catch(() => null);
     place.removeAttribute("aria-busy");
