@@ -16,6 +16,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
 
+
+def memory_of(process: int) -> float:
+    """Return the memory of a process that is in use, MB; 0 if it has ended."""
+    found = re.search(r"VmRSS:\s*(\d+) kB", Path(f"/proc/{process}/status").read_text())
+    return int(found[1]) / 1e3 if found else 0.0
+
+
 Found = TypeVar("Found")
 
 SOURCE = Path(__file__).resolve().parents[1] / "src"
@@ -73,10 +80,7 @@ class Served:
 
     def memory(self) -> float:
         """Memory of the server process that is in use, MB."""
-        status = Path(f"/proc/{self.process.pid}/status").read_text()
-        found = re.search(r"VmRSS:\s*(\d+) kB", status)
-        assert found is not None
-        return int(found[1]) / 1e3
+        return memory_of(self.process.pid)
 
 
 def wait_for(condition: Callable[[], Found], limit: float = 20.0) -> Found:

@@ -10,16 +10,18 @@ import sys
 import threading
 import time
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
 
 from command_line import copy_sedan, run
-from served import processes_in, served, wait_for
+from served import memory_of, processes_in, served, wait_for
 from sprung.app import jobs as module
 from sprung.app.events import _states as stream_states
 from sprung.app.job_process import LEAST
 from sprung.app.jobs import Job, Jobs, TooManyJobsError
+from zip_bomb import write_zip_bomb
 
 
 @pytest.fixture
@@ -123,6 +125,21 @@ def test_a_process_has_a_limit_of_memory(tmp_path: Path) -> None:
     jobs.close()
     assert (job.state, job.status) == ("failed", 2)
     assert "x.wav: found content for which the memory is not sufficient" in job.messages
+
+
+def test_a_zip_bomb_is_refused_in_little_memory(jobs: Jobs, tmp_path: Path) -> None:
+    write_zip_bomb(tmp_path / "x.xlsx", 300)
+    job = jobs.start(("check", ".", "--no-page"), tmp_path, "Check")
+    largest = 0.0
+    while not jobs.get(job.id).is_over:
+        for process in processes_in(tmp_path):
+            with suppress(OSError):
+                largest = max(largest, memory_of(process))
+        time.sleep(0.02)
+    job = jobs.get(job.id)
+    assert (job.state, job.status) == ("failed", 2)
+    assert "that unpack to 307" in job.messages
+    assert 20 < largest < 400
 
 
 def states(jobs: Jobs, last: int, wanted: str | None, most: int) -> list[tuple[int, dict[str, object]]]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import datetime as dt
 import time
-import zipfile
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
@@ -16,6 +15,7 @@ from command_line import copy_sedan
 from sprung.errors import InputError
 from sprung.formats import SampleTable, libraries, read_table
 from sprung.formats.excel import ExcelFormat
+from zip_bomb import write_zip_bomb
 
 openpyxl = pytest.importorskip("openpyxl")
 
@@ -167,20 +167,7 @@ def test_it_is_claimed_by_its_ending(tmp_path: Path) -> None:
 
 def test_a_workbook_that_unpacks_to_many_times_its_size_is_refused_at_once(tmp_path: Path) -> None:
     """Without the size of a sheet, openpyxl would build 100 MB of rows in memory first."""
-    path = written(tmp_path / "x.xlsx", data=[HEAD, *COLUMNS])
-    with zipfile.ZipFile(path) as archive:
-        members = {name: archive.read(name) for name in archive.namelist()}
-    row = b"<row><c><v>0</v></c><c><v>0</v></c></row>" * 25_000
-    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
-        for name, content in members.items():
-            with archive.open(name, "w") as file:
-                if not name.endswith("sheet1.xml"):
-                    file.write(content)
-                    continue
-                file.write(b'<worksheet xmlns="http://schemas.openxmlformats.org/spreadsheetml/2006/main"><sheetData>')
-                for _ in range(100):
-                    file.write(row)
-                file.write(b"</sheetData></worksheet>")
+    path = write_zip_bomb(tmp_path / "x.xlsx", 100)
     begun = time.monotonic()
     with pytest.raises(
         InputError, match=r"x\.xlsx: found \d+ bytes that unpack to 1025\d{5}; .*save it as \.xlsx, or better as CSV"
