@@ -218,3 +218,14 @@ def test_a_page_of_another_server_reaches_nothing(user: Any, server: Served, att
     assert {status for url, status in answers if url.startswith(server.origin)} == {403}  # or none that it may read
     assert server.ask("/jobs").json == before
     assert not (server.folder / "attack.csv").exists()
+
+
+def test_the_printed_address_opens_from_a_link_of_another_page(browser: Any, server: Served) -> None:
+    """As in a terminal that is itself a page: a redirection would be followed without the new, strict cookie."""
+    context = browser.new_context()
+    page = context.new_page()
+    page.set_content(f'<a href="{server.address}">open</a>')
+    page.get_by_text("open").click()
+    page.wait_for_url(f"{server.origin}/")
+    page.get_by_role("heading", name="Campaigns").wait_for()
+    context.close()
