@@ -51,6 +51,17 @@ _STATUS: dict[type[Exception], int] = {
     SprungError: 400,
 }
 
+_TITLES = {
+    400: "This cannot be used",
+    404: "Not found",
+    409: "Changed meanwhile",
+    413: "Too large",
+    429: "Too many jobs",
+    500: "A defect of sprung",
+    503: "Busy",
+}
+"""Headings of the pages that are shown instead of others, by HTTP status."""
+
 
 def create_application(workspace: Workspace, jobs: Jobs, queries: Queries, keys: Keys, port: int) -> ASGIApp:
     """Return the application.
@@ -98,5 +109,11 @@ def _defect(request: Request, error: Exception) -> Response:
 def message(request: Request, status: int, text: str) -> Response:
     """Return the answer to a request that failed: a page, or plain text for a script."""
     if wants_page(request):
-        return render(request, "message.html", status, title=HTTPStatus(status).phrase, lines=text.splitlines())
+        return render(
+            request,
+            "message.html",
+            status,
+            title=_TITLES.get(status, HTTPStatus(status).phrase),
+            lines=text.splitlines(),
+        )
     return PlainTextResponse(f"{text}\n", status)
