@@ -137,8 +137,8 @@ def test_a_recording_is_drawn_and_one_elsewhere_is_not_read(server: Served) -> N
     [
         ("/campaign", 400),
         ("/campaign?campaign=none.toml", 404),
-        ("/campaign?campaign=../elsewhere.csv", 404),
-        ("/campaign?campaign=car/empty_bounce.csv", 200),  # no TOML: shown as text
+        ("/campaign?campaign=../elsewhere.toml", 404),
+        ("/campaign?campaign=car/empty_bounce.csv", 400),
         ("/campaign?campaign=car", 400),
         ("/check?campaign=../x.toml", 404),
         ("/identify?campaign=/etc/passwd", 404),

@@ -85,3 +85,5 @@ form.addEventListener("keydown", (event) => {
 
 const sketch = setUpSketch(form, check);
 setUpRecordings(form, body);
+// What was typed before this script was loaded.
+if ([...form.querySelectorAll("input:not([type=hidden])")].some((input) => input.value !== input.defaultValue || input.checked !== input.defaultChecked)) check();

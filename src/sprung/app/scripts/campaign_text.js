@@ -12,6 +12,10 @@ addEventListener("keydown", (event) => {
   form.requestSubmit(form.querySelector("button.main"));
 });
 
+// What was typed before this script was loaded.
+const text = form.querySelector("#text");
+if (text.value !== text.defaultValue) ask();
+
 async function ask() {
   const own = ++asked;
   const answer = await fetch(form.getAttribute("action").replace("/campaign?", "/campaign/live?"), { method: "POST", body: new URLSearchParams(new FormData(form)) }).catch(() => null);
