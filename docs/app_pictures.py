@@ -91,6 +91,32 @@ def walk(page: Any, take: Any) -> None:
     take("report")
 
 
+def after_the_report(page: Any, take: Any) -> None:
+    """Show a drop in slow motion, and two recordings side by side."""
+    page.get_by_role("link", name="Show the motion").click()
+    page.locator("#dampers svg").first.wait_for()
+    page.get_by_role("button", name="Pause").click()
+    drop = page.locator("#motion optgroup").last.locator("option").first.get_attribute("value")
+    page.locator("#motion").select_option(drop)
+    page.locator(f"#frame[data-ready='{drop.removeprefix('drop:')}']").wait_for()
+    page.locator("#time").fill("0.07")
+    page.set_viewport_size({"width": SIZE["width"], "height": 1500})
+    take("motion")
+    page.set_viewport_size(SIZE)
+    page.get_by_role("link", name="Recordings").click()
+    for number in (0, 1):
+        page.locator("#files input").nth(number).check()
+        page.locator("#chosen li").nth(number).wait_for()
+    page.locator("#channels input").nth(4).check()
+    offset = page.locator("#chosen input").nth(1)
+    offset.fill("0.1")
+    offset.press("Tab")
+    page.locator("#plot").press("+")
+    page.locator("#plot").press("ArrowLeft")
+    page.wait_for_timeout(1500)
+    take("recordings")
+
+
 def main() -> None:
     """Write the pictures."""
     with tempfile.TemporaryDirectory() as place:
@@ -104,7 +130,12 @@ def main() -> None:
             if path.suffix != ".csv":
                 path.unlink()
         with page_of(folder) as page:
-            walk(page, lambda name: page.screenshot(path=HERE / f"app-{name}.png"))
+
+            def take(name: str) -> None:
+                page.screenshot(path=HERE / f"app-{name}.png")
+
+            walk(page, take)
+            after_the_report(page, take)
 
 
 if __name__ == "__main__":

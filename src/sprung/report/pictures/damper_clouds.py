@@ -51,7 +51,7 @@ def _picture(result: Result, axle: str, points: Sequence[DamperPoints]) -> Pictu
     curve, band = _curve(result, axle, x)
     noise = float(np.sqrt(np.mean([one.noise**2 for one in points])))
     apart = np.concatenate([one.force - one.model for one in points])
-    beyond = float(np.sqrt(np.mean(apart**2)))
+    scatter = float(np.sqrt(np.mean(apart**2)))
     name = f"{_AXLES[axle]} dampers".strip()
     shown = (
         Rule(0.0, "reference", horizontal=True),
@@ -68,12 +68,12 @@ def _picture(result: Result, axle: str, points: Sequence[DamperPoints]) -> Pictu
             Curve(x, np.zeros(_LINE), "simulated", width=1.6, band=band),
         ),
         height=0.9,
-        note=f"{beyond:.2g} N rms, each uncertain by {noise:.2g} N",
+        note=f"{scatter:.2g} N rms, each uncertain by {noise:.2g} N",
     )
     across = Axis("velocity (rebound positive), m/s", *axis_limits(velocity, margin=0.02))
     description = (
         f"Force of the {name} over velocity from {x[0]:.2g} to {x[-1]:.2g} m/s: the model from {curve[0]:.0f} to "
-        f"{curve[-1]:.0f} N; the points deviate from it by {beyond:.2g} N root-mean-square, each uncertain by {noise:.2g} N."
+        f"{curve[-1]:.0f} N; the points deviate from it by {scatter:.2g} N root-mean-square, each uncertain by {noise:.2g} N."
     )
     return Picture(name.capitalize(), across, (panel, below), description)
 
