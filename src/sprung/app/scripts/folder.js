@@ -29,6 +29,13 @@ async function send() {
   removeEventListener("beforeunload", warn);
   sending = false;
   if (!failed) location.reload();
+  else if (!list.querySelector("a")) {
+    const link = document.createElement("a");
+    link.href = "/";
+    link.textContent = "Show the folder as it is now";
+    list.append(document.createElement("li"));
+    list.lastElementChild.append(link);
+  }
 }
 
 function sendOne({ file, bar, state, folder }) {
