@@ -90,7 +90,7 @@ class _Lane:
     """One process, which answers one question at a time, in the order in which they come; a thread waits for it."""
 
     def __init__(self) -> None:
-        self._questions: queue.SimpleQueue[tuple[str, PendingAnswer]] = queue.SimpleQueue()
+        self._questions: queue.SimpleQueue[tuple[str, PendingAnswer] | None] = queue.SimpleQueue()
         self._process: subprocess.Popen[bytes] | None = None
         self._lock = threading.Lock()
         self._thread: threading.Thread | None = None
@@ -114,17 +114,25 @@ class _Lane:
         return answer
 
     def close(self) -> None:
-        process = self._process
+        """End the process and the thread."""
+        process, thread = self._process, self._thread
+        self._questions.put(None)
         if process is not None:
             process.kill()
+        if thread is not None:
+            thread.join(5)
 
     def _work(self) -> None:
         while True:
             try:
-                request, answer = self._questions.get(timeout=IDLE)
+                question = self._questions.get(timeout=IDLE)
             except queue.Empty:
                 self._end()
                 continue
+            if question is None:
+                self._end()
+                return
+            request, answer = question
             if answer.set_running_or_notify_cancel():
                 try:
                     answer.set_result(self._answer(request))
