@@ -15,6 +15,8 @@ from sprung.app.form_changes import number_literal, understand, with_problems
 from sprung.campaign import schema_text
 from sprung.errors import InputError
 
+DATA = sorted((Path(__file__).parents[1] / "data").glob("*/campaign.toml"))
+
 FILE = """schema = 1
 [vehicle]
 name = "Van"
@@ -120,6 +122,38 @@ def test_problems_and_gaps_stand_beside_their_fields(path: Path) -> None:
 
 def test_nothing_entered_changes_nothing(path: Path) -> None:
     assert save(FILE, path) == FILE
+
+
+WRONG = """schema = 1
+vehicle = { name = 3, model = "halved", wheelbase = "2.55", motion_ratio = { spring_front = [1] } }
+test = { date = "yesterday" }
+known = { k_sf = { value = 1, std = 2, more = 3 }, nothing = 4 }
+model.extras = ["anti-rol"]
+model.fall = 3
+[[sensor]]
+on = "wing"
+position = [1, "b"]
+[[load]]
+items = [{ mass = "heavy", position = 5, on = 7 }, 3]
+added = 4
+[[drop]]
+wheels = ["xx", "fl", 3]
+load = ["a"]
+window = [1, 2, 3]
+files = 3
+"""
+
+
+@pytest.mark.parametrize("text", [WRONG, "sensor = 3\ndrop = [1, 2]\nload = { a = 1 }\nvehicle = []\n", ""])
+def test_what_is_wrong_stays_until_somebody_changes_it(path: Path, text: str) -> None:
+    assert save(text, path) == text
+
+
+@pytest.mark.parametrize("file", DATA, ids=lambda file: file.parent.name)
+def test_the_forms_of_whole_campaigns_change_nothing(file: Path) -> None:
+    form = form_of(file.read_text(), file)
+    assert understand(form, entered(form)).changes == ()
+    assert (form.faulty, form.missing) == (0, 0)
 
 
 @pytest.mark.parametrize("comma", [".", ","])

@@ -317,8 +317,13 @@ def _field(group: Place, spec: Spec, entry: Mapping[str, Any], source: _Source) 
         spec = replace(spec, rare=True)  # only sensors on the body have one
     if (group[0], spec.key) == ("drop", "load"):
         spec, choices = replace(spec, kind="choice"), tuple(source.loads)
-    if spec.kind == "choice" and isinstance(node, str) and node not in choices:
-        choices = (*choices, node)
+    stated_words = (
+        chosen if spec.kind == "several" else (node,) if spec.kind == "choice" and isinstance(node, str) else ()
+    )
+    choices = (
+        *choices,
+        *(word for word in stated_words if word not in choices),
+    )  # also one that is wrong stays until changed
     return Field(
         name,
         place,
