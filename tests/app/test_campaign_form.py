@@ -219,6 +219,7 @@ def test_each_kind_of_field(path: Path) -> None:
         ("vehicle__cg_height", "1.194,5", "'1.194,5'"),
         ("sensor__1__position__0", "1", "no y"),
         ("test__date", "yesterday", "'yesterday'"),
+        ("test__date", "31.02.2026", "'31.02.2026'"),
     ],
 )
 def test_what_cannot_be_understood_is_said_and_kept_on_the_page(path: Path, name: str, value: str, found: str) -> None:
@@ -294,3 +295,21 @@ def test_three_hundred_drops_are_few_enough_inputs(path: Path) -> None:
         len(each.choices) if each.kind == "several" else len(each.parts) for each in form_of(text, path).fields()
     )
     assert inputs < 5000  # what a form may have
+
+
+def test_what_cannot_be_written_hinders_nothing_else(path: Path) -> None:
+    """Items in sections of their own, [[load.items]], can be changed but not continued by a form."""
+    from sprung.app.form_view import form_view  # noqa: PLC0415 (imports the drawings)
+
+    text = FILE.replace("items = [{ mass = 235, position = [-1.2, 0.4, 1.1] }]", "[[load.items]]\nmass = 235")
+    given = {
+        "vehicle.name": ["Lorry"],
+        "load.0.name": ["bricks"],
+        "load.0.items.0.mass.value": ["240"],
+        "load.0.items.0.mass.std": [""],
+    }
+    view = form_view(str(path), text, given)
+    assert (view["refused"], view["unclear"]) == ([], 0)
+    assert tomllib.loads(view["text"])["load"][0] == {"name": "bricks", "items": [{"mass": 240}]}
+    with pytest.raises(InputError, match="Change it in the text of the file"):
+        form_view(str(path), text, given, "add item load.0")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import datetime as dt
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -179,12 +180,14 @@ def _number(each: Field, index: int, text: str) -> str:
 
 def _date(each: Field, text: str) -> str:
     found = _DATE.fullmatch(text)
-    if found is None:
-        raise _NotUnderstoodError(
-            each.parts[0].name, f"'{text}'", "a day such as 2026-11-22 or 22.11.2026", "Correct it."
-        )
-    year, month, day = (found[1], found[2], found[3]) if found[1] else (found[6], found[5], found[4])
-    return f"{year}-{int(month):02d}-{int(day):02d}"
+    try:
+        if found is None:
+            raise ValueError(text)
+        year, month, day = (found[1], found[2], found[3]) if found[1] else (found[6], found[5], found[4])
+        return dt.date(int(year), int(month), int(day)).isoformat()
+    except ValueError:
+        expected = "a day such as 2026-11-22 or 22.11.2026"
+        raise _NotUnderstoodError(each.parts[0].name, f"'{text}'", expected, "Correct it.") from None
 
 
 def with_problems(

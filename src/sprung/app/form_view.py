@@ -55,10 +55,11 @@ def form_view(
     if entered is not None:
         understood = understand(campaign_form(text, place)[0], entered)
         unclear = dict(understood.problems)
-        try:
-            text = apply_changes(text, understood.changes)
-        except InputError as error:  # an entry that is written in a way that only its author can change
-            refused = [str(problem) for problem in error.problems]
+        for change in understood.changes:
+            try:
+                text = apply_changes(text, [change])
+            except InputError as error:  # an entry that is written in a way that only its author can change
+                refused += [str(problem) for problem in error.problems]
     if action and not unclear:
         text = apply_action(text, action)
     form, checked = campaign_form(text, place)
