@@ -98,8 +98,11 @@ def test_results_are_compared(user: Tabs) -> None:
     text.wait_for()
     row = next(line for line in text.inner_text().splitlines() if line.startswith("c_sf") and "certain" in line)
     assert float(re.findall(r"[+-][\d.]+", row)[0]) == pytest.approx(0.2 * TABLE_1_CAR.c_sf, rel=0.02)
+    picture = page.locator("figure.differences svg")
+    assert "c_sf" in picture.text_content()
+    assert re.search(r"c_sf \+(19|20)[.\d]* %", picture.locator("desc").text_content())
     page.get_by_text("Show as commands").click()
-    assert page.locator("details.commands code").inner_text() == "sprung compare before/results after/results"
+    assert page.locator("details.commands code").inner_text() == "sprung compare before/results after/results --json"
     address = page.url
     page.reload()
     assert page.locator("#outcome pre").inner_text() == text.inner_text()

@@ -47,10 +47,15 @@ def scene(folder: str) -> dict[str, Any]:
     series = load_result(folder, series=True).series if result.verdict.state != "reject" else {}
     frame = solid_frame(result)
     why = ""
-    try:
-        result.vehicle  # noqa: B018 (raises what prevents every motion)
-    except InputError as error:
-        why = str(error)
+    if result.verdict.state == "reject":
+        why = "The result is rejected: it has no estimates, and there is no motion to show. Its report has the reasons."
+    else:
+        missing = [name for name, estimate in result.parameters.items() if estimate.value is None]
+        if missing:
+            why = (
+                f"Modes can be shown, but neither drops nor dampers: {', '.join(missing)} are not determined. The report says "
+                "what would determine them."
+            )
     return {
         "places": np.round(frame.places, 4).tolist(),
         "rows": np.round(frame.rows, 5).tolist(),
@@ -133,7 +138,8 @@ def drop_motion(folder: str, drop: str) -> dict[str, Any]:
     how = (
         "free decay of the identified vehicle"
         if found.is_linear
-        else f"integrated from the fitted readings; they differ by {100 * found.deviation:.1f} % from those of a linear vehicle"
+        else f"integrated from the fitted readings; they differ by {100 * found.deviation:.1f} % from a free decay of the "
+        "linear vehicle"
     )
     return {
         "time": np.round(found.time[::every], 4).tolist(),

@@ -26,6 +26,7 @@ from sprung.report.pictures.channels import channels_picture
 from sprung.report.pictures.curves import curve_pictures
 from sprung.report.pictures.damper_clouds import damper_cloud_pictures
 from sprung.report.pictures.decays import LoadDecays, decays_by_load
+from sprung.report.pictures.differences import differences_picture
 from sprung.report.pictures.fleets import fleet_pictures
 from sprung.report.pictures.motions import motion_picture
 from sprung.report.pictures.parameters import parameters_picture
@@ -86,6 +87,7 @@ __all__ = [
     "curve_pictures",
     "damper_cloud_pictures",
     "decays_by_load",
+    "differences_picture",
     "draft_view",
     "draw_check",
     "draw_validation",

@@ -2,20 +2,26 @@
 
 from __future__ import annotations
 
+from markupsafe import Markup
 from starlette.requests import Request
 from starlette.responses import Response
 from starlette.routing import Route
 
 from sprung.app.commands import arguments
 from sprung.app.forms import read_form
+from sprung.app.queries import queries_of
 from sprung.app.result_files import results_folders
-from sprung.app.tool_pages import show_tool, start_tool
+from sprung.app.tool_pages import document_of, job_of, show_tool, start_tool
 from sprung.errors import InputError, Problem
 
 
-def show(request: Request) -> Response:
+async def show(request: Request) -> Response:
     """Answer with the results that can be compared, and with the comparison that the address names."""
-    return _page(request, request.query_params.getlist("results"))
+    document = document_of(job_of(request))
+    found = {"text": "", "picture": ""}
+    if document is not None:
+        found = await queries_of(request).ask("form", "comparison_view:show", document=document)
+    return _page(request, request.query_params.getlist("results"), found)
 
 
 async def compare(request: Request) -> Response:
@@ -27,16 +33,23 @@ async def compare(request: Request) -> Response:
         if len(ordered) < 2:
             found = "one result" if ordered else "no result"
             raise InputError([Problem("Results", found, "two or more", "Mark those that are to be compared.")])
-        command = arguments(request.app.state.workspace, "compare", *ordered)
+        command = arguments(request.app.state.workspace, "compare", *ordered, options={"json": True})
     except InputError as error:
-        return _page(request, ordered, error.problems)
+        return _page(request, ordered, {"text": "", "picture": ""}, error.problems)
     names = ", ".join(name or "this folder" for name in ordered)
     return start_tool(request, command, f"Compare {names}", {"results": ordered})
 
 
-def _page(request: Request, chosen: list[str], problems: tuple[Problem, ...] = ()) -> Response:
-    folders = results_folders(request.app.state.workspace)
-    return show_tool(request, "compare.html", problems=problems, folders=folders, chosen=chosen)
+def _page(request: Request, chosen: list[str], found: dict[str, str], problems: tuple[Problem, ...] = ()) -> Response:
+    return show_tool(
+        request,
+        "compare.html",
+        problems=problems,
+        folders=results_folders(request.app.state.workspace),
+        chosen=chosen,
+        text=found["text"],
+        picture=Markup(found["picture"]),  # noqa: S704 (`picture_svg` escapes its texts)
+    )
 
 
 routes = (Route("/compare", show), Route("/compare", compare, methods=["POST"]))

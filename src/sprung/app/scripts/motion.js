@@ -240,7 +240,10 @@ async function begin() {
   }
   options(field("motion"), "Drops, as fitted", scene.drops.map((drop) => [`drop:${drop}`, drop]));
   options(field("damper-drop"), "One drop", scene.drops.map((drop) => [drop, drop]));
-  if (scene.why) field("refusal").textContent = scene.why;
+  field("why").textContent = scene.why;
+  field("why").hidden = !scene.why;
+  field("dampers-section").hidden = !scene.drops.length;
+  field("stage").hidden = !field("motion").options.length;
   if (!field("motion").options.length) return;
   listen();
   await choose();
@@ -248,8 +251,6 @@ async function begin() {
   if (scene.drops.length) {
     field("damper-drop").value = scene.drops[0];
     await dampers();
-  } else {
-    field("dampers-section").hidden = true;
   }
 }
 
