@@ -156,17 +156,22 @@ class _Marks:
     """What is said of places, until a field takes it."""
 
     problems: dict[str, list[Problem]] = field(default_factory=dict)
+    keys: dict[tuple[str, str], dict[str, None]] = field(default_factory=dict)
     missing: dict[str, str] = field(default_factory=dict)
     general: list[Problem] = field(default_factory=list)
 
-    def take(self, name: str) -> tuple[Problem, ...]:
-        """Return the problems of a place, once."""
-        return tuple(self.problems.pop(name, ()))
-
     def take_within(self, name: str) -> tuple[Problem, ...]:
-        """Return the problems of a place and of everything in it that no field has."""
-        inside = [key for key in self.problems if key == name or key.startswith(f"{name}.")]
-        return tuple(problem for key in inside for problem in self.problems.pop(key))
+        """Return the problems of a place and of everything in it that no field has, once."""
+        section, index, *_ = f"{name}.".split(".")
+        inside = [key for key in self.keys.get((section, index), ()) if f"{key}.".startswith(f"{name}.")]
+        return tuple(problem for key in inside for problem in self.problems.pop(key, ()))
+
+    def add(self, name: str, problem: Problem) -> None:
+        """Add a problem of a place."""
+        section, index, *_ = f"{name}.".split(".")
+        for start in ((section, ""), (section, index)):
+            self.keys.setdefault(start, {})[name] = None
+        self.problems.setdefault(name, []).append(problem)
 
 
 def campaign_form(text: str, path: Path) -> tuple[CampaignForm, CheckedDocument]:
@@ -187,27 +192,28 @@ def campaign_form(text: str, path: Path) -> tuple[CampaignForm, CheckedDocument]
     text = text.removeprefix("\ufeff")
     document = tomllib.loads(text)
     checked = check_document(document, path)
-    marks = _marks(document, checked, path)
+    absent = _absent_files(document, path)
+    marks = _marks(document, checked, absent)
     values = {place: text[value.start : value.end] for place, value in entries_by_place(scan(text)).items()}
     groups = tuple(_groups(document, values, marks))
     left = [problem for problems in marks.problems.values() for problem in problems]
-    faulty = len(checked.problems) + sum(len(problems) for problems in _absent_files(document, path).values())
+    faulty = len(checked.problems) + len(absent)
     shown = {each.place[1] for group in groups if group.section == "known" for each in group.fields}
     addable = tuple((spec.key, spec.label) for spec in section_specs("known") if spec.key not in shown)
     missing = sum(entry.needed for entry in checked.missing)
     return CampaignForm(groups, (*marks.general, *left), missing, faulty, addable), checked
 
 
-def _marks(document: Mapping[str, Any], checked: CheckedDocument, path: Path) -> _Marks:
+def _marks(document: Mapping[str, Any], checked: CheckedDocument, absent: Mapping[str, Problem]) -> _Marks:
     marks = _Marks()
     for problem in checked.problems:
         found = _WHERE.match(problem.where)
         if found is None:
             marks.general.append(problem)
         else:
-            marks.problems.setdefault(_name_of(found[1]), []).append(problem)
-    for name, problems in _absent_files(document, path).items():
-        marks.problems.setdefault(name, []).extend(problems)
+            marks.add(_name_of(found[1]), problem)
+    for name, problem in absent.items():
+        marks.add(name, problem)
     for entry in checked.missing:
         found = _WHERE.match(entry.problem.where)
         if found is not None:
@@ -218,16 +224,16 @@ def _marks(document: Mapping[str, Any], checked: CheckedDocument, path: Path) ->
     return marks
 
 
-def _absent_files(document: Mapping[str, Any], path: Path) -> dict[str, list[Problem]]:
+def _absent_files(document: Mapping[str, Any], path: Path) -> dict[str, Problem]:
     """Return a problem for each recording that is not beside the campaign file."""
-    found: dict[str, list[Problem]] = {}
+    found: dict[str, Problem] = {}
     drops = document.get("drop")
     for index, drop in enumerate(drops if isinstance(drops, list) else ()):
         file = drop.get("file") if isinstance(drop, dict) else None
         if isinstance(file, str) and not file.startswith("TODO:") and not (path.parent / file).is_file():
             where, do = f"{path.name}: drop[{index + 1}].file", "Correct the name, or put the recording there."
             problem = Problem(where, f"'{file}', which is not there", "a recording beside the campaign file", do)
-            found[f"drop.{index}.file"] = [problem]
+            found[f"drop.{index}.file"] = problem
     return found
 
 

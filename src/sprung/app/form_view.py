@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
+from functools import cache
 from pathlib import Path
 from typing import Any
 
-from sprung.app.campaign_form import CampaignForm, campaign_form
+from sprung.app.campaign_form import CampaignForm, Field, Group, campaign_form
 from sprung.app.campaign_text import apply_changes
 from sprung.app.form_actions import apply_action
 from sprung.app.form_changes import understand, with_problems
+from sprung.app.form_fields import Spec
 from sprung.campaign import Campaign, parse_toml
 from sprung.errors import InputError, record_failure
 from sprung.report import sketch_svg, vehicle_sketch
@@ -123,11 +125,40 @@ def sketch(campaign: Campaign | None) -> dict[str, Any]:
 
 def _document(form: CampaignForm) -> dict[str, Any]:
     """Return a form as data for the template and the script of its page."""
-    document = asdict(form)
-    for group, own in zip(document["groups"], form.groups, strict=True):
-        for fields, owners in [(group["fields"], own.fields)] + [
-            (item["fields"], other.fields) for item, other in zip(group["items"], own.items, strict=True)
-        ]:
-            for each, owner in zip(fields, owners, strict=True):
-                each["folded"] = owner.is_folded
-    return document
+    return {
+        "groups": [_group_document(group) for group in form.groups],
+        "problems": [asdict(problem) for problem in form.problems],
+        "missing": form.missing,
+        "faulty": form.faulty,
+        "addable": form.addable,
+    }
+
+
+def _group_document(group: Group) -> dict[str, Any]:
+    return {
+        "name": group.name,
+        "section": group.section,
+        "title": group.title,
+        "fields": [_field_document(each) for each in group.fields],
+        "items": [_group_document(item) for item in group.items],
+        "problems": [asdict(problem) for problem in group.problems],
+    }
+
+
+def _field_document(each: Field) -> dict[str, Any]:
+    return {
+        "name": each.name,
+        "spec": _spec_document(each.spec),
+        "parts": [{"name": part.name, "label": part.label, "value": part.value} for part in each.parts],
+        "choices": each.choices,
+        "chosen": each.chosen,
+        "missing": each.missing,
+        "problems": [asdict(problem) for problem in each.problems],
+        "stated": each.stated,
+        "folded": each.is_folded,
+    }
+
+
+@cache
+def _spec_document(spec: Spec) -> dict[str, Any]:
+    return asdict(spec)  # the same for hundreds of fields

@@ -27,6 +27,7 @@ _PLAIN = re.compile(
     r"|[^\s,\[\]{}#]+",
     re.DOTALL,
 )
+_PLAIN_NAME = re.compile(r"\[?\s*([A-Za-z0-9_-]+)\s*(?:\]|= 0)")
 _LINE_END = re.compile(r"[^\n]*(?:\n|\Z)")
 
 
@@ -173,6 +174,8 @@ def _numbered(names: tuple[str, ...], is_array: bool, counts: dict[Place, int]) 
 
 def _names(header: str) -> tuple[str, ...]:
     """Return the names of a header or of a dotted key, given as a document of its own."""
+    if plain := _PLAIN_NAME.fullmatch(header):
+        return (plain[1],)  # nearly all of them, and much quicker
     node: Any = tomllib.loads(header)
     names: list[str] = []
     while isinstance(node, dict) and node:
