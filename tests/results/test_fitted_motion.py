@@ -181,3 +181,20 @@ def test_what_cannot_be_shown_is_refused_with_the_reason(linear: Result) -> None
     assert fitted_motion(reduced, drop).is_linear  # of a linear vehicle three readings are sufficient
     with pytest.raises(InputError, match="do not tell the forces of 4 dampers apart"):
         damper_points(reduced, drop)
+
+
+@pytest.mark.long
+def test_a_drop_that_is_fitted_from_its_release_moves_as_simulated() -> None:
+    """The fall, in which tyres are off the ground, is no free decay of the linear vehicle."""
+    drops = [{"wheels": wheels, "load": "empty"} for wheels in (["fl", "fr", "rl", "rr"], ["fl", "rl"], ["fl", "fr"])]
+    options = {"drops": drops, "rate": 250}
+    known = {"total_mass": TABLE_1_CAR.total_mass, "wheelbase": TABLE_1_CAR.wheelbase}
+    campaign = sprung.simulate(TABLE_1_CAR, noise=0.05, seed=1, known=known, **options)  # type: ignore[arg-type]
+    result = sprung.identify(campaign, extras=(), tracks="shared", fall=True)
+    assert result.fit.since == "release"
+    for drop in result.series:
+        found = fitted_motion(result, drop)
+        assert not found.is_linear
+        for point in damper_points(result, drop):
+            truth = suspension_rate(TABLE_1_CAR, drop, point.wheel, found.time, **options)
+            assert np.std(point.velocity - truth) < 0.01 * np.abs(truth).max() + 1.2 * RATE_NOISE

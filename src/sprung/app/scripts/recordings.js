@@ -181,11 +181,14 @@ function lists() {
 async function toggle(file, on) {
   if (on) chosen.set(file, chosen.get(file) ?? { offset: 0, samples: new Map() });
   else chosen.delete(file);
+  field("opening").textContent = on && !known.has(file) ? `${file} is being opened` : "";
   try {
     await learn([file]);
   } catch (error) {
     field("refusal").textContent = error.message;
     return;
+  } finally {
+    field("opening").textContent = "";
   }
   const names = files().flatMap((name) => known.get(name)?.channels?.map((channel) => channel.name) ?? []);
   if (!names.some((name) => shown.has(name)) && names.length) shown.add(names[0]);
