@@ -52,9 +52,15 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
     (folder / "broken").mkdir()
     (folder / "broken" / "campaign.toml").write_text(f"x = {QUOTES}")
     (folder / "report.html").write_text(REPORT)
-    assert run("identify", car.path).status == 0
     with served(folder) as running:
         yield running
+
+
+@pytest.fixture(scope="module")
+def results(server: Served) -> str:
+    """The name of a results folder, for an address."""
+    assert run("identify", server.folder / FOLDER).status == 0
+    return quote(f"{FOLDER}/results")
 
 
 @pytest.fixture(scope="module")
@@ -93,8 +99,8 @@ def check(page: Any) -> None:
     assert page.title() != "1"
 
 
-def test_names_and_texts_of_files_are_text_on_every_page(user: Any, server: Served) -> None:
-    campaign, results = quote(f"{FOLDER}/campaign.toml"), quote(f"{FOLDER}/results")
+def test_names_and_texts_of_files_are_text(user: Any, server: Served) -> None:
+    campaign = quote(f"{FOLDER}/campaign.toml")
     first = opened(user, server, "/")
     assert RECORDING in first.inner_text("body")
     assert VEHICLE in first.inner_text("body")
@@ -112,6 +118,13 @@ def test_names_and_texts_of_files_are_text_on_every_page(user: Any, server: Serv
     for name in ("wrong", "broken"):
         shown = opened(user, server, f"/campaign?campaign={name}/campaign.toml").content()
         assert (MARK if name == "wrong" else "<b class=mark>") in html.unescape(shown)
+    for path in ("/files/", "/campaign?campaign=", "/report?results=", "/jobs/"):
+        opened(user, server, path + quote(f"{MARK}{QUOTES}", safe=""))
+
+
+@pytest.mark.long
+def test_names_and_texts_of_files_are_text_on_every_other_page(user: Any, server: Served, results: str) -> None:
+    campaign = quote(f"{FOLDER}/campaign.toml")
     page = opened(user, server, f"/check?campaign={campaign}")
     page.get_by_role("button", name="Check", exact=True).first.click()
     page.locator("iframe").wait_for(timeout=60_000)
@@ -128,15 +141,7 @@ def test_names_and_texts_of_files_are_text_on_every_page(user: Any, server: Serv
         opened(user, server, path)
     for name in ("report", "motion", "export", "ride"):
         assert "car <img" in opened(user, server, f"/{name}?results={results}").inner_text("body")
-    for path in (
-        "/files/",
-        "/campaign?campaign=",
-        "/report?results=",
-        "/check?campaign=",
-        "/draft?folder=",
-        "/jobs/",
-        "/",
-    ):
+    for path in ("/check?campaign=", "/draft?folder=", "/motion?results=", "/"):
         opened(user, server, path + quote(f"{MARK}{QUOTES}", safe=""))
 
 
@@ -147,7 +152,10 @@ def test_the_reports_of_a_folder_are_alone(user: Any, server: Served) -> None:
     page.wait_for_timeout(500)
     assert page.title() == "alone"
     assert page.evaluate("window.origin") == "null"
-    results = quote(f"{FOLDER}/results")
+
+
+@pytest.mark.long
+def test_the_report_in_its_page_is_alone(user: Any, server: Served, results: str) -> None:
     shown = opened(user, server, f"/report?results={results}")
     frame = next(frame for frame in shown.frames if "/files/" in frame.url)
     assert frame.evaluate("window.origin") == "null"
