@@ -21,12 +21,12 @@ from sprung.app.pages import (
     exporting,
     files,
     folder,
+    identification,
     motion,
     planning,
     recordings,
     results,
     riding,
-    running,
 )
 from sprung.app.pages import jobs as job_pages
 from sprung.app.queries import Queries, QueryError
@@ -38,7 +38,7 @@ LARGEST_BODY = 4_000_000
 """Largest body of a form in bytes: twice the largest campaign.toml, with every character that needs it escaped."""
 
 _PAGES = (
-    *(assets, folder, campaign, running, files, job_pages),
+    *(assets, folder, campaign, identification, files, job_pages),
     *(results, comparison, planning, exporting, riding, motion, recordings),
 )
 """Modules with the routes of pages, in the order in which they are matched."""
