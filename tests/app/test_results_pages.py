@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import re
+import shlex
 import shutil
 import struct
 import zlib
@@ -115,6 +116,7 @@ def test_results_are_compared(user: Tabs) -> None:
     user.complaints[:] = [text for text in user.complaints if "400 (Bad Request)" not in text]  # as it should
 
 
+@pytest.mark.long
 def test_a_campaign_is_validated_and_drawn(user: Tabs, server: Served) -> None:
     page = user.open(PAGES[2])
     page.get_by_role("button", name="Validate").click()
@@ -155,6 +157,7 @@ def export(page: Any, title: str, folder: Path) -> Path | str:
     return file
 
 
+@pytest.mark.long
 def test_a_vehicle_is_exported_or_the_reason_is_stated(user: Tabs, tmp_path: Path) -> None:
     page = user.open(PAGES[4])
     titles = [title.inner_text() for title in page.locator(".card h2").all()]
@@ -181,6 +184,7 @@ def test_every_format_is_exported(user: Tabs, server: Served, tmp_path: Path) ->
     assert len(list((server.folder / "before/results").glob("*.mat"))) == 1
 
 
+@pytest.mark.long
 def test_ride_numbers_have_the_options_of_the_command(user: Tabs) -> None:
     page = user.open(PAGES[5])
     for road in "ABDE":
@@ -361,6 +365,40 @@ def test_nothing_outside_the_folder_is_read(server: Served, path: str) -> None:
     answer = server.ask(path)
     assert answer.status in {400, 404}
     assert "root:" not in answer.text
+
+
+@pytest.mark.parametrize(
+    ("path", "body", "command"),
+    [
+        (PAGES[2], "", "sprung validate before/campaign.toml -o before/validation"),
+        (PAGES[3], "wanted=0%2C5&terms=yes", "sprung plan before/campaign.toml --wanted 0.5 --terms"),
+        (PAGES[4], "to=mjcf&approximate=yes", "sprung export before/results --to mjcf --approximate --json"),
+        (
+            PAGES[4],
+            "to=state-space&amplitude=0%2C02&number=5",
+            "sprung export before/results --to state-space --amplitude 0.02 --json",
+        ),
+        (
+            PAGES[4],
+            "to=draws&number=50&table=parquet",
+            "sprung export before/results -o before/results/draws.parquet --to draws --number 50 --json",
+        ),
+        (
+            PAGES[5],
+            "road=C&speed=50+72%2C5&seat=-1%2C4+0%2C4%0D%0A-1.4%2C-0.4&hours=2",
+            "sprung ride before/results --road C --speed 50 --speed 72.5 --seat=-1.4,0.4 --seat=-1.4,-0.4 --hours 2",
+        ),
+    ],
+)
+def test_a_form_starts_the_command_that_it_describes(server: Served, path: str, body: str, command: str) -> None:
+    headers = {"Content-Type": "application/x-www-form-urlencoded"}
+    answer = server.ask(path, "POST", body.encode(), headers)
+    assert answer.status == 303
+    job = re.search(r"job=([\w-]+)", answer.headers["location"])
+    assert job is not None
+    typed = server.ask(f"/jobs/{job[1]}", headers={"Accept": "application/json"}).json["command"]
+    server.ask(f"/jobs/{job[1]}/cancel", "POST", b"", {"Accept": "application/json"})
+    assert shlex.split(typed.replace("--seat=", "--seat ")) == shlex.split(command.replace("--seat=", "--seat "))
 
 
 def test_an_option_is_never_taken_from_a_form_as_it_is(server: Served) -> None:
