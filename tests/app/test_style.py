@@ -49,3 +49,17 @@ def _luminance(colour: str) -> float:
     parts = [int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5)]
     linear = [part / 12.92 if part <= 0.04045 else ((part + 0.055) / 1.055) ** 2.4 for part in parts]
     return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+
+
+@pytest.mark.parametrize("path", sorted(STYLES.with_name("scripts").glob("*.js")), ids=lambda path: path.name)
+def test_no_script_writes_markup_or_loads_anything_from_elsewhere(path: Path) -> None:
+    """Texts of files become text nodes; drawings of the server are parsed as documents, in which nothing runs."""
+    forbidden = r"innerHTML|outerHTML|insertAdjacentHTML|document\.write|\beval\(|new Function|srcdoc|https?://(?!www\.w3\.org/)"
+    assert re.findall(forbidden, path.read_text(encoding="utf-8")) == []
+
+
+@pytest.mark.parametrize("path", sorted(STYLES.with_name("templates").glob("*.html")), ids=lambda path: path.name)
+def test_no_template_has_scripts_or_styles_of_its_own(path: Path) -> None:
+    """The policy of the pages, `default-src 'self'`, would refuse them; nothing switches the escaping off."""
+    text = path.read_text(encoding="utf-8")
+    assert re.findall(r"<script(?![^>]*\bsrc=)|<style|\bstyle=|\son\w+=|javascript:|\|\s*safe\b|autoescape", text) == []

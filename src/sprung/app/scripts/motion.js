@@ -1,5 +1,6 @@
 // The page of the motion: what is shown, how fast, from where, and what is saved of it.
 import { animatedPng } from "/scripts/apng.js";
+import { svgOf } from "/scripts/sketch.js";
 import { VIEWS, draw, prepare } from "/scripts/wire_frame.js";
 
 const canvas = document.querySelector("#frame");
@@ -206,7 +207,7 @@ function options(select, title, entries) {
   if (entries.length) select.append(group);
 }
 
-// The dampers: pictures that the server draws, text escaped there.
+// The dampers: pictures that the server draws.
 async function dampers() {
   const place = field("dampers"), drop = field("damper-drop").value;
   place.setAttribute("aria-busy", "true");
@@ -214,7 +215,7 @@ async function dampers() {
     const found = await fetchJson(`/motion/dampers?results=${encodeURIComponent(results)}&drop=${encodeURIComponent(drop)}`);
     place.replaceChildren(...found.pictures.map((svg) => {
       const figure = document.createElement("figure");
-      figure.innerHTML = svg;
+      figure.append(svgOf(svg));
       const title = document.createElement("figcaption");
       title.textContent = figure.querySelector("title").textContent;
       figure.prepend(title);
