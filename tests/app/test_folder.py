@@ -104,7 +104,21 @@ def test_a_draft_is_a_job_that_writes_the_campaign(tmp_path: Path) -> None:
         page = server.ask(answer).text
         assert 'href="/campaign?campaign=measured%201/campaign.toml"' in page
         assert "sprung new &#39;measured 1&#39;" in page
-    assert (inside / "campaign.toml").is_file()
+        campaign = inside / "campaign.toml"
+        campaign.write_text(campaign.read_text() + "# mine\n")
+        answer = post(server, "/draft", folder="measured 1", settings="yes")
+        job = answer.rpartition("=")[2]
+        wait_for(
+            lambda: server.ask(f"/jobs/{job}", headers={"Accept": "application/json"}).json["state"] == "failed", 60
+        )
+        page = server.ask(answer).text
+        assert "a folder that has none yet" in page
+        assert 'name="force"' in page
+        assert campaign.read_text().endswith("# mine\n")
+        answer = post(server, "/draft", folder="measured 1", settings="yes", force="yes")
+        job = answer.rpartition("=")[2]
+        wait_for(lambda: server.ask(f"/jobs/{job}", headers={"Accept": "application/json"}).json["state"] == "done", 60)
+        assert "# mine" not in campaign.read_text()
 
 
 def post(server: Served, path: str, **fields: str) -> str:
