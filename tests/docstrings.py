@@ -24,6 +24,7 @@ import sprung
 
 ROOMS = (
     "analysis",
+    "app",
     "assessment",
     "campaign",
     "checking",

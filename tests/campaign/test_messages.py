@@ -166,6 +166,12 @@ def test_text_that_is_not_utf8_is_named_by_its_line(folder: Folder) -> None:
         read(path)
 
 
+def test_lists_in_each_other_are_no_defect_of_the_program(folder: Folder) -> None:
+    path = folder(("wheelbase = 2.76", "wheelbase = " + "[" * 5000 + "]" * 5000))
+    with pytest.raises(InputError, match=r"campaign\.toml: found lists or tables in each other, thousands deep"):
+        read(path)
+
+
 def test_a_missing_campaign_file_names_its_neighbour(folder: Folder) -> None:
     path = folder()
     with pytest.raises(InputError, match=r"no such file.*Did you mean 'campaign\.toml'\?"):

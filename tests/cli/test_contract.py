@@ -23,6 +23,7 @@ COMMANDS = (
     "validate",
     "compare",
     "ride",
+    "app",
     "plan",
     "simulate",
     "schema",

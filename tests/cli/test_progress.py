@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import pickle
 from pathlib import Path
 
@@ -9,7 +10,7 @@ import pytest
 from car import CAR
 
 import sprung
-from command_line import Folder
+from command_line import Folder, run
 from sprung.cli.output import StatusLine
 from sprung.progress import Step, counted
 
@@ -74,3 +75,15 @@ def test_the_status_line_shows_elapsed_time_and_an_estimate_where_there_is_one()
     now[0] = 65.0
     line.show_step(Step("judging the fit"))
     assert line.text() == "1:05 judging the fit"
+
+
+def test_steps_for_programs_are_lines_of_json_on_standard_error(folder: Folder) -> None:
+    said = run("check", folder.path, "--no-page", "--json", SPRUNG_PROGRESS="json")
+    assert said.status == 0
+    steps = [json.loads(line)["progress"] for line in said.err.splitlines()]
+    assert steps[0]["text"] == "reading the recordings"
+    first = steps[1]
+    assert (first["stage"], first["step"], first["of"], first["done"]) == ("reading the recordings", 1, 4, 0.0)
+    assert first["text"].startswith("reading the recordings, 1 of 4: ")
+    assert said.json["drops"]
+    assert run("check", folder.path, "--no-page", "--json").err == ""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import datetime as dt
+import time
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
@@ -14,6 +15,7 @@ from command_line import copy_sedan
 from sprung.errors import InputError
 from sprung.formats import SampleTable, libraries, read_table
 from sprung.formats.excel import ExcelFormat
+from zip_bomb import write_zip_bomb
 
 openpyxl = pytest.importorskip("openpyxl")
 
@@ -161,3 +163,14 @@ def test_a_campaign_of_workbooks(tmp_path: Path) -> None:
 def test_it_is_claimed_by_its_ending(tmp_path: Path) -> None:
     assert ExcelFormat().claims(tmp_path / "A.XLSX", b"")
     assert not ExcelFormat().claims(tmp_path / "a.csv", b"PK\x03\x04")
+
+
+def test_a_workbook_that_unpacks_to_many_times_its_size_is_refused_at_once(tmp_path: Path) -> None:
+    """Without the size of a sheet, openpyxl would build 100 MB of rows in memory first."""
+    path = write_zip_bomb(tmp_path / "x.xlsx", 100)
+    begun = time.monotonic()
+    with pytest.raises(
+        InputError, match=r"x\.xlsx: found \d+ bytes that unpack to 1025\d{5}; .*save it as \.xlsx, or better as CSV"
+    ):
+        read(path)
+    assert time.monotonic() - begun < 2

@@ -88,6 +88,8 @@ def test_a_rate_among_the_attributes_is_a_clock(tmp_path: Path, name: str, where
 def test_nothing_outside_of_the_file_is_read(tmp_path: Path) -> None:
     with h5py.File(tmp_path / "other.h5", "w") as other:
         other["secret"] = B
+        other.create_group("inner")["secret"] = B
+    (tmp_path / "secret.txt").write_text("what nobody else may read")
 
     def write(file: Any) -> None:
         file["time"], file["a"] = TIME, A
@@ -95,12 +97,18 @@ def test_nothing_outside_of_the_file_is_read(tmp_path: Path) -> None:
         layout = h5py.VirtualLayout(shape=(60,), dtype=float)
         layout[:] = h5py.VirtualSource("other.h5", "secret", shape=(60,))
         file.create_virtual_dataset("virtual", layout)
+        file["ext"] = h5py.ExternalLink("other.h5", "inner")
+        file["through"] = h5py.SoftLink("/ext/secret")
+        file.create_dataset("unit", shape=(1,), dtype="S25", external=[(str(tmp_path / "secret.txt"), 0, 25)])
         file["circle"] = file["/"]
         file["gone"] = h5py.SoftLink("/nowhere")
 
     result = read(written(tmp_path, write))
     assert "link: a link to another file" in result.notes[-1]
-    assert "virtual: numbers in another file" in result.notes[-1]
+    assert "virtual: data in another file" in result.notes[-1]
+    assert "through: a link to another file" in result.notes[-1]
+    assert "unit: data in another file" in result.notes[-1]
+    assert "nobody" not in str(result)
     assert result.channels == ("a",)
 
 

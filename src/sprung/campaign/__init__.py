@@ -3,6 +3,7 @@
 from sprung.campaign.campaign import Campaign, ModelChoice, TestRecord
 from sprung.campaign.campaign_source import CampaignSource, resolve_campaign
 from sprung.campaign.completeness import MissingEntry
+from sprung.campaign.document_check import CheckedDocument, check_document
 from sprung.campaign.drop import (
     DEFAULT_HEIGHT,
     DROP_KINDS,
@@ -26,6 +27,7 @@ from sprung.campaign.schema_file import SCHEMA_FILE, SCHEMA_LINE, schema_text
 from sprung.campaign.sep005 import to_sep005
 from sprung.campaign.source_file import SourceFile
 from sprung.campaign.statements import check_statements, require_plausible
+from sprung.campaign.toml_document import parse_toml
 from sprung.campaign.writing import campaign_files, write
 
 __all__ = [
@@ -39,6 +41,7 @@ __all__ = [
     "Bump",
     "Campaign",
     "CampaignSource",
+    "CheckedDocument",
     "Drop",
     "DropTest",
     "Excitation",
@@ -51,6 +54,7 @@ __all__ = [
     "SourceFile",
     "TestRecord",
     "campaign_files",
+    "check_document",
     "check_statements",
     "drop_kind",
     "explain_implausible",
@@ -59,6 +63,7 @@ __all__ = [
     "find_placeholders",
     "merge_loggers",
     "parse_known_values",
+    "parse_toml",
     "placeholder",
     "read",
     "read_document",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import astuple
+from dataclasses import astuple, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -53,11 +53,25 @@ def read_campaign(
     if not drops:
         unread.raise_if_any()
     _refuse_unusable([drop.recording for drop in drops.values()])
+    return replace(
+        stated_campaign(parsed, path, sensors),
+        drops=tuple(drops.values()),
+        faults=tuple(_unread_fault(problem) for problem in unread),
+        files=_sources(files, path, signals),
+        missing=missing,
+        unread=tuple(
+            drop for index, drop in zip(parsed.numbered("drop"), parsed.file.drop, strict=True) if index not in drops
+        ),
+    )
+
+
+def stated_campaign(parsed: ParsedFile[CampaignFile], path: Path, sensors: Sequence[Sensor]) -> Campaign:
+    """Return what a campaign file states of the vehicle, its sensors and loads, without drops."""
     vehicle = parsed.file.vehicle
     return Campaign(
         name=vehicle.name or _printable(path.absolute().parent.name),
-        sensors=sensors,
-        drops=tuple(drops.values()),
+        sensors=tuple(sensors),
+        drops=(),
         loads=stated_loads(parsed.file),
         wheelbase=vehicle.wheelbase.known if vehicle.wheelbase else None,
         cg_height=vehicle.cg_height,
@@ -65,13 +79,7 @@ def read_campaign(
         roll_axis_height=vehicle.roll_axis_height,
         known={name: measured.known for name, measured in parsed.file.known.items()},
         model=parsed.file.model,
-        faults=tuple(_unread_fault(problem) for problem in unread),
         path=path,
-        files=_sources(files, path, signals),
-        missing=missing,
-        unread=tuple(
-            drop for index, drop in zip(parsed.numbered("drop"), parsed.file.drop, strict=True) if index not in drops
-        ),
         vehicle_model=vehicle.model,
         identification=vehicle.identification,
         test=parsed.file.test,

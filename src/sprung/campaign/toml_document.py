@@ -39,10 +39,31 @@ def read_toml(path: Path) -> dict[str, Any]:
         found = "a character that is not UTF-8"
         do = "Save the file as UTF-8 in your editor."
         raise InputError([Problem(f"{path.name}: line {line}", found, "text in UTF-8, as TOML needs it", do)]) from None
+    return parse_toml(text, path)
+
+
+def parse_toml(text: str, path: Path) -> dict[str, Any]:
+    """Return the content of a TOML file from its text.
+
+    Parameters
+    ----------
+    text
+        Of the file.
+    path
+        Of the file, for messages.
+
+    Raises
+    ------
+    InputError
+        If it is not TOML; the message names line and column.
+    """
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise InputError([_syntax_problem(path, text, str(error))]) from None
+    except RecursionError:
+        found, do = "lists or tables in each other, thousands deep", "Write the file as `sprung demo` does."
+        raise InputError([Problem(path.name, found, "a campaign file or vehicle file", do)]) from None
 
 
 def _syntax_problem(path: Path, text: str, message: str) -> Problem:

@@ -9,6 +9,7 @@ import traceback
 from sprung.cli import batches as batches
 from sprung.cli import exports as exports
 from sprung.cli import identification as identification
+from sprung.cli import page as page
 from sprung.cli import recordings as recordings
 from sprung.cli import riding as riding
 from sprung.cli import studies as studies
@@ -17,6 +18,11 @@ from sprung.cli.help_text import readable
 from sprung.cli.output import BAD_INPUT, DEFECT, INTERRUPTED, complain
 from sprung.cli.signals import interruption_of, report_stop, sigterm_as_exception
 from sprung.errors import SprungError
+
+_TOO_LARGE = (
+    "sprung has not enough memory for this input. Cut the recordings to a few seconds before and after each drop, lower their "
+    "sampling rate to 1000 Hz, or use a machine with more memory. Nothing was written."
+)
 
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 """Environment variables with the number of threads of NumPy's libraries, read when NumPy is imported."""
@@ -44,6 +50,9 @@ def _run() -> None:
         raise SystemExit(report_stop(stopped)) from None
     except SprungError as error:
         complain(readable(f"{_headline(error)}\n{error}"))
+        raise SystemExit(BAD_INPUT) from None
+    except MemoryError:
+        complain(readable(_TOO_LARGE))
         raise SystemExit(BAD_INPUT) from None
     except Exception as error:
         complain(f"{traceback.format_exc()}\n{_report(error)}")

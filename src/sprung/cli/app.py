@@ -29,6 +29,7 @@ ORDER = (
     "compare",
     "ride",
     "fleet",
+    "app",
     "simulate",
     "paper",
     "schema",

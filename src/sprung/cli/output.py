@@ -25,13 +25,16 @@ INTERRUPTED = 130
 TERMINATED = 143
 """Exit statuses; the last two are those of shells for Ctrl-C and SIGTERM."""
 
+PROGRESS_VARIABLE = "SPRUNG_PROGRESS"
+"""Environment variable; with the value ``json`` every step is one line of JSON on standard error."""
+
 _SOON = 2.0
 """Time after which the remaining time of a stage is estimated, s."""
 
 
 @contextmanager
 def working(first: str) -> Iterator[Progress]:
-    """Show the current step and the elapsed time in one line of a terminal; nothing in a pipe or file.
+    """Show the current step and the elapsed time in one line of a terminal; nothing in a pipe or file, unless it is asked for.
 
     Parameters
     ----------
@@ -43,6 +46,10 @@ def working(first: str) -> Iterator[Progress]:
     Progress
         To call with each step that begins.
     """
+    if os.environ.get(PROGRESS_VARIABLE) == "json":
+        _report_step(Step(first))
+        yield _report_step
+        return
     console = Console(stderr=True)
     line = StatusLine(Step(first))
     if not console.is_terminal:
@@ -52,6 +59,12 @@ def working(first: str) -> Iterator[Progress]:
         line, console=console, transient=True, refresh_per_second=4, redirect_stdout=False, redirect_stderr=False
     ):
         yield line.show_step
+
+
+def _report_step(step: Step) -> None:
+    """Print a step for another program."""
+    document = {"text": str(step), "stage": step.stage, "step": step.step, "of": step.of, "done": step.done}
+    complain(json.dumps({"progress": document}))
 
 
 class StatusLine:

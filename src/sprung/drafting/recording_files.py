@@ -8,13 +8,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from sprung.drafting.names import tokens
-
-_NO_RECORDINGS = frozenset(
-    (".toml", ".json", ".npz", ".html", ".htm", ".py", ".md", ".pdf", ".png", ".jpg", ".jpeg", ".svg", ".doc", ".docx", ".ppt",
-     ".pptx", ".zip", ".mp4", ".mov", ".ini", ".log", ".db",
-     ".m", ".mlx", ".slx", ".slxc", ".mdl", ".vi")
-)  # fmt: skip
-"""File name extensions in a folder of recordings that are ignored."""
+from sprung.files import NO_RECORDINGS
 
 
 def find_recording_files(folder: Path) -> Iterator[str]:
@@ -35,7 +29,7 @@ def find_recording_files(folder: Path) -> Iterator[str]:
         relative = path.relative_to(folder)
         hidden = any(part.startswith((".", "~")) for part in relative.parts)
         results = any((parent / "results.json").exists() for parent in path.parents if folder in parent.parents)
-        if path.is_file() and not hidden and not results and path.suffix.lower() not in _NO_RECORDINGS:
+        if path.is_file() and not hidden and not results and path.suffix.lower() not in NO_RECORDINGS:
             found.append(relative)
     # The channel files of ISO-MME, which end in a number, belong to the descriptor beside them or above.
     descriptors = {folder / path.parent for path in found if path.suffix.lower() in {".mme", ".chn"}}

@@ -41,7 +41,21 @@ def new_token() -> str:
 
 
 def temporary_path(target: Path, token: str, state: str) -> Path:
-    """Return the temporary path beside a file, of its ``new`` or its ``old`` content."""
+    """Return the temporary path beside a file.
+
+    Parameters
+    ----------
+    target
+        The file.
+    token
+        From `new_token`.
+    state
+        ``new`` for its new content, ``old`` for its previous one.
+
+    Returns
+    -------
+    Path
+    """
     return target.with_name(f".{target.name}.{token}.{state}")
 
 

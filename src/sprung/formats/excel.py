@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import datetime as dt
+import zipfile
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from sprung.errors import InputError
 from sprung.formats.csv import table_from_lines
 from sprung.formats.libraries import load_library
-from sprung.formats.reading_errors import MemoryBudget, input_error, reading
+from sprung.formats.reading_errors import SPARE, MemoryBudget, input_error, reading
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -20,6 +21,9 @@ if TYPE_CHECKING:
 _KIND = "an Excel workbook"
 _ZIP, _COMPOUND = b"PK\x03\x04", b"\xd0\xcf\x11\xe0"
 _SAVE = "Open it in a spreadsheet program and save it as .xlsx, or better as CSV."
+_RATIO = 15
+"""How many times larger than the file its sheets may be: with sensor noise 4 to 9 times, of zeros only 13 times (measured)."""
+
 _CELL = 32
 """Bytes of text that a cell may take."""
 
@@ -43,6 +47,9 @@ class ExcelFormat:
         openpyxl = load_library("openpyxl", "excel", path)
         budget = MemoryBudget(path)
         with reading(path.name, "an Excel workbook"):
+            _refuse_larger_content(
+                path
+            )  # openpyxl reads a whole sheet to find its size where the sheet does not state it
             workbook = openpyxl.load_workbook(path, read_only=True, data_only=True)
         try:
             with reading(path.name, "an Excel workbook"):
@@ -69,6 +76,16 @@ def _refuse_others(path: Path) -> None:
         found = f"text under the name of a workbook ({ending})"
         raise input_error(path.name, found, _KIND, "Rename it to .csv, as its content suggests.")
     raise input_error(path.name, f"a file that is no workbook ({ending})", _KIND, "Copy or export it again.")
+
+
+def _refuse_larger_content(path: Path) -> None:
+    """Refuse an archive that unpacks to many times its size; no more than it declares is unpacked."""
+    with zipfile.ZipFile(path) as archive:
+        declared = sum(member.file_size for member in archive.infolist())
+    size = path.stat().st_size
+    if declared > _RATIO * size + SPARE:
+        found = f"{size} bytes that unpack to {declared}"
+        raise input_error(path.name, found, "a workbook about as large as its recording", _SAVE)
 
 
 def _lines(sheet: Any, budget: MemoryBudget) -> Iterator[str]:

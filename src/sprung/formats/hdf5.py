@@ -59,6 +59,11 @@ def named(items: Any) -> list[str]:
     return [name for name in items if isinstance(name, str)]
 
 
+def is_elsewhere(item: Any, group: Any) -> bool:
+    """Return whether an object that a group names lies in another file: a soft link may lead through an external one."""
+    return bool(item.file.filename != group.file.filename)
+
+
 def _group(h5py: Any, group: Any, budget: MemoryBudget, seen: set[Any], path: Path, depth: int = 0) -> Node:
     budget.take(PER_OBJECT)
     if depth > DEEPEST:
@@ -70,6 +75,9 @@ def _group(h5py: Any, group: Any, budget: MemoryBudget, seen: set[Any], path: Pa
             node[name] = Foreign("a link to another file")
             continue
         item = group.get(name)
+        if item is not None and is_elsewhere(item, group):
+            node[name] = Foreign("a link to another file")
+            continue
         if item is None or item in seen:  # names may lead nowhere, in circles, or to one thing twice
             continue
         seen.add(item)
@@ -84,6 +92,8 @@ def _group(h5py: Any, group: Any, budget: MemoryBudget, seen: set[Any], path: Pa
 
 def _dataset(h5py: Any, dataset: Any, budget: MemoryBudget, path: Path) -> Node:
     budget.take(PER_OBJECT)
+    if dataset.external or dataset.is_virtual:
+        return Foreign("data in another file")
     if h5py.check_string_dtype(dataset.dtype) is not None:
         return _words(h5py, dataset, budget)
     if dataset.dtype.hasobject:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sprung.formats import mat4, mat5
-from sprung.formats.hdf5 import PER_OBJECT, SIGNATURE, named
+from sprung.formats.hdf5 import PER_OBJECT, SIGNATURE, is_elsewhere, named
 from sprung.formats.hdf5_datasets import lazy_numbers, read_dataset
 from sprung.formats.libraries import load_library
 from sprung.formats.nested import DEEPEST, Foreign, Node
@@ -67,8 +67,16 @@ def _read_7_3(path: Path) -> Node:
     h5py = load_library("h5py", "hdf5", path)
     budget = MemoryBudget(path)
     with reading(path.name, _KIND), h5py.File(path, "r") as file:
-        items = {name: file[name] for name in named(file) if not name.startswith("#")}
+        items = {name: _linked(file, name) for name in named(file) if not name.startswith("#")}
         return {name: _item(h5py, path, item, budget, 0) for name, item in items.items()}
+
+
+def _linked(group: Any, name: str) -> Any:
+    """Return an object that a group names; MATLAB writes no links, and one to another file is not followed."""
+    item = group[name]
+    if is_elsewhere(item, group):
+        raise ValueError(f"{name} is a link to another file")
+    return item
 
 
 def _item(h5py: Any, path: Path, item: Any, budget: MemoryBudget, depth: int) -> Node:
@@ -80,7 +88,7 @@ def _item(h5py: Any, path: Path, item: Any, budget: MemoryBudget, depth: int) ->
     if foreign or depth > DEEPEST:
         return Foreign(f"an object of class {kind}, which only MATLAB can read")
     if isinstance(item, h5py.Group):
-        return _struct({name: _item(h5py, path, item[name], budget, depth + 1) for name in named(item)})
+        return _struct({name: _item(h5py, path, _linked(item, name), budget, depth + 1) for name in named(item)})
     if item.shape is None or "MATLAB_empty" in item.attrs:
         return np.empty(0)
     is_list = h5py.check_ref_dtype(item.dtype) is not None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import logging
 import warnings
 from collections.abc import Iterator
@@ -76,6 +77,10 @@ def reading(where: str, kind: str) -> Iterator[None]:
         except InputError:
             raise
         except Exception as error:
+            if isinstance(error, MemoryError) or getattr(error, "errno", None) == errno.ENOMEM:
+                found = "content for which the memory is not sufficient"
+                do = "Cut the recording to a few seconds before and after each drop, or lower its sampling rate."
+                raise input_error(where, found, f"{kind} that fits into the memory", do) from error
             reason = " ".join(str(error).split()) or type(error).__name__
             found = f"a damaged file ({reason[:200]})"
             raise input_error(where, found, kind, "Copy or export it again, or in another format.") from error

@@ -2,7 +2,7 @@
 
 from sprung.report.drawing.palette import LIGHT
 from sprung.report.drawing.picture import Band, Curve, Mark, Panel, Picture, Points, Rule
-from sprung.report.drawing.svg import picture_svg
+from sprung.report.drawing.svg import picture_frame, picture_svg
 from sprung.report.drawings import draw_check, draw_validation
 from sprung.report.folder import (
     REPORT_FILES,
@@ -19,10 +19,14 @@ from sprung.report.page.check import CHECK_FILE, check_html
 from sprung.report.page.fleet import FLEET_FILE, fleet_html
 from sprung.report.page.pdf import pdf_of
 from sprung.report.page.report import render_report, report_html
+from sprung.report.page.style import page_style
+from sprung.report.page.summary import VerdictText, verdict_text
 from sprung.report.pictures.amplitudes import amplitude_pictures
 from sprung.report.pictures.channels import channels_picture
 from sprung.report.pictures.curves import curve_pictures
+from sprung.report.pictures.damper_clouds import damper_cloud_pictures
 from sprung.report.pictures.decays import LoadDecays, decays_by_load
+from sprung.report.pictures.differences import differences_picture
 from sprung.report.pictures.fleets import fleet_pictures
 from sprung.report.pictures.motions import motion_picture
 from sprung.report.pictures.parameters import parameters_picture
@@ -30,7 +34,7 @@ from sprung.report.pictures.recordings import landing_picture, recording_picture
 from sprung.report.pictures.spectra import spectra_picture
 from sprung.report.pictures.stability import stability_picture
 from sprung.report.pictures.transmissibility import transmissibility_picture
-from sprung.report.pictures.wire_frame import BODY_EDGES, STRUTS, wire_frame
+from sprung.report.pictures.wire_frame import BODY_EDGES, HUBS, STRUTS, SolidFrame, solid_frame, wire_frame
 from sprung.report.sketch.shapes import Disc, Drawing, Stroke, TextShape
 from sprung.report.sketch.sheet import blank_sketch, sketch_sheet
 from sprung.report.sketch.sketch import VehicleSketch, vehicle_sketch
@@ -52,6 +56,7 @@ __all__ = [
     "BODY_EDGES",
     "CHECK_FILE",
     "FLEET_FILE",
+    "HUBS",
     "LIGHT",
     "REPORT_FILES",
     "RESULT_FILES",
@@ -67,9 +72,11 @@ __all__ = [
     "Points",
     "Rule",
     "SavedResult",
+    "SolidFrame",
     "Stroke",
     "TextShape",
     "VehicleSketch",
+    "VerdictText",
     "add_report",
     "amplitude_pictures",
     "blank_sketch",
@@ -78,7 +85,9 @@ __all__ = [
     "check_view",
     "comparison_view",
     "curve_pictures",
+    "damper_cloud_pictures",
     "decays_by_load",
+    "differences_picture",
     "draft_view",
     "draw_check",
     "draw_validation",
@@ -89,9 +98,11 @@ __all__ = [
     "modes_view",
     "monte_carlo_view",
     "motion_picture",
+    "page_style",
     "paper_view",
     "parameters_picture",
     "pdf_of",
+    "picture_frame",
     "picture_svg",
     "plan_view",
     "recording_picture",
@@ -102,6 +113,7 @@ __all__ = [
     "save_result",
     "sketch_sheet",
     "sketch_svg",
+    "solid_frame",
     "spectra_picture",
     "stability_picture",
     "text_of",
@@ -109,6 +121,7 @@ __all__ = [
     "truth_view",
     "validation_view",
     "vehicle_sketch",
+    "verdict_text",
     "wire_frame",
     "write_check",
     "write_fleet",

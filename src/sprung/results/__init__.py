@@ -1,6 +1,8 @@
 """The result of an identification: records, tables and files."""
 
 from sprung.results.amplitude import amplitude_document, curve_document
+from sprung.results.dampers import DamperPoints, damper_points
+from sprung.results.motion import FittedMotion, fitted_motion
 from sprung.results.records import FitReport, SensorEstimate, TestedVehicle, TraceStep
 from sprung.results.result import Result
 from sprung.results.saved import load
@@ -23,7 +25,9 @@ from sprung.results.withholding import withhold_estimates
 
 __all__ = [
     "TRACE_TITLE",
+    "DamperPoints",
     "FitReport",
+    "FittedMotion",
     "PriorComparison",
     "Result",
     "SensorEstimate",
@@ -34,8 +38,10 @@ __all__ = [
     "amplitude_document",
     "characteristics_tables",
     "curve_document",
+    "damper_points",
     "damper_tables",
     "derived_table",
+    "fitted_motion",
     "load",
     "meaning_of",
     "modes_table",

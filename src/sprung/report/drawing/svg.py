@@ -122,6 +122,32 @@ def picture_svg(picture: Picture, style: str = "") -> str:
     return svg_element("picture", (WIDTH, height), picture.title, picture.description, style + content)
 
 
+def picture_frame(picture: Picture) -> dict[str, float]:
+    """Return where the panels of a picture and its horizontal axis lie, for a script that adds marks to its SVG element.
+
+    Parameters
+    ----------
+    picture
+        Any.
+
+    Returns
+    -------
+    dict
+        ``left``, ``width``, ``top`` and ``bottom`` of the panels in units of the drawing; ``low`` and ``high``, the limits of
+        the axis in its own unit.
+    """
+    boxes, axis = layout_of(picture).boxes, picture.x
+    first = boxes[0]
+    return {
+        "left": first.left,
+        "width": first.width,
+        "top": first.top,
+        "bottom": boxes[-1].bottom,
+        "low": axis.low,
+        "high": axis.high,
+    }
+
+
 def draw_content(picture: Picture) -> tuple[str, float]:
     """Return the content of a picture as SVG elements.
 

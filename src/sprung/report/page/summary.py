@@ -11,7 +11,17 @@ from sprung.tables import percent_text
 
 
 class VerdictText(NamedTuple):
-    """Meaning of a verdict: symbol, statement, explanation."""
+    """Meaning of a verdict.
+
+    Attributes
+    ----------
+    symbol
+        One letter.
+    statement
+        Whether the estimates may be used.
+    explanation
+        What the reasons of the verdict are, before their list.
+    """
 
     symbol: str
     statement: str
@@ -40,6 +50,10 @@ def verdict_text(result: Result) -> VerdictText:
     ----------
     result
         Of an identification.
+
+    Returns
+    -------
+    VerdictText
     """
     return _VERDICTS[result.verdict.state]
 

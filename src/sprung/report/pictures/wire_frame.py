@@ -97,19 +97,40 @@ class WireFrame:
         return float(abs(self.places[HUBS[0], 0] - self.places[HUBS[2], 0]))
 
 
-def wire_frame(result: Result, width: float = 220.0) -> WireFrame:
-    """Return a wire frame with the proportions of the identified vehicle.
+@dataclass(frozen=True, eq=False)
+class SolidFrame:
+    """The wire frame in space.
+
+    Attributes
+    ----------
+    places
+        Positions of its nodes at rest: x forward of the centre of gravity, y left of the centreline, z above the ground, m,
+        shape (node, 3). The last is an engine on its mounts, if there is one.
+    rows
+        Rise of each node per unit of each coordinate of the vehicle, the engine's the last, shape (node, coordinate + 1).
+    wheel
+        Radius of a wheel, m.
+    wheelbase
+        m.
+    """
+
+    places: Real
+    rows: Real
+    wheel: float
+    wheelbase: float
+
+
+def solid_frame(result: Result) -> SolidFrame:
+    """Return a wire frame in space with the proportions of the identified vehicle.
 
     Parameters
     ----------
     result
         Of an identification.
-    width
-        Of the picture, units.
 
     Returns
     -------
-    WireCar
+    SolidFrame
     """
     values = {name: estimate.value for name, estimate in result.parameters.items() if estimate.value is not None}
     wheelbase = result.setup.known["wheelbase"].value if "wheelbase" in result.setup.known else _WHEELBASE
@@ -129,14 +150,32 @@ def wire_frame(result: Result, width: float = 220.0) -> WireFrame:
     rows[:12, 0], rows[:12, 1], rows[:12, 2] = 1, -flat[:12, 0], flat[:12, 1]
     rows[HUBS, range(3, 7)] = 1
     rows[16:, 7] = 1
-    rows = rows @ _of_whole(layout_of(values))
-    across, up = flat[:, 0] + _AWAY[0] * flat[:, 1], heights + _AWAY[1] * flat[:, 1]
-    radius = _HUB * length
+    return SolidFrame(np.column_stack([flat, heights]), rows @ _of_whole(layout_of(values)), _HUB * length, length)
+
+
+def wire_frame(result: Result, width: float = 220.0) -> WireFrame:
+    """Return a wire frame with the proportions of the identified vehicle, in oblique projection.
+
+    Parameters
+    ----------
+    result
+        Of an identification.
+    width
+        Of the picture, units.
+
+    Returns
+    -------
+    WireCar
+    """
+    solid = solid_frame(result)
+    (x, y, heights), length = solid.places.T, solid.wheelbase
+    across, up = x + _AWAY[0] * y, heights + _AWAY[1] * y
+    radius = solid.wheel
     scale = (width - 12) / (np.ptp(across) + 1e-9)
     swing = _SWING * length
     top, bottom = up.max() + swing, up[list(HUBS)].min() - radius - swing
     places = np.stack([6 + scale * (across - across.min()), scale * (top - up)], axis=1)
-    return WireFrame(places, rows * scale, scale * radius, width, float(scale * (top - bottom)))
+    return WireFrame(places, solid.rows * scale, scale * radius, width, float(scale * (top - bottom)))
 
 
 def _of_whole(layout: Layout) -> Real:

@@ -27,6 +27,7 @@ Shapes: TypeAlias = Callable[[float], tuple[Frame, list[Shape], list[Label], flo
 class _Attempt(NamedTuple):
     """A drawing with a certain upper margin."""
 
+    frame: Frame
     parts: list[Shape]
     marks: list[Mark]
     labels: list[Label]
@@ -48,7 +49,7 @@ def _attempt(drawn: tuple[Frame, list[Shape], list[Label], float], marks: Marks)
     dimensions = [part for part in parts if isinstance(part, Stroke) and part.kind == "dimension"]
     lines = [line for part in dimensions for line in pairwise(part.points)]
     placed = place_labels(wanted, taken, Box(2.0, 2.0, WIDTH - 2.0, height - 2.0), lines)
-    return _Attempt(parts, marked, wanted, placed, height)
+    return _Attempt(frame, parts, marked, wanted, placed, height)
 
 
 def compose(title: str, description: str, shapes: Shapes, marks: Marks) -> Drawing:
@@ -71,7 +72,7 @@ def compose(title: str, description: str, shapes: Shapes, marks: Marks) -> Drawi
         if not best.unplaced:
             break
     assert best is not None  # noqa: S101 (the first attempt; for the type checker)
-    parts, marked, wanted, placed, height = best
+    frame, parts, marked, wanted, placed, height = best
     for label, position in zip(wanted, placed, strict=True):
         if position is None:  # too crowded for a leader line: listed below the drawing
             parts += [
@@ -87,7 +88,7 @@ def compose(title: str, description: str, shapes: Shapes, marks: Marks) -> Drawi
         ]
     for mark in marked:
         parts += mark_shapes(mark)
-    return Drawing(title, description, WIDTH, height, tuple(parts))
+    return Drawing(title, description, WIDTH, height, tuple(parts), frame.scale, frame.origin)
 
 
 def _box(text: TextShape) -> Box:

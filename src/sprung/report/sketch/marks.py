@@ -55,12 +55,15 @@ class Mark:
         ``sensor`` or ``load``.
     on_body
         Whether it is on the body, and not on a wheel.
+    channel
+        Of a sensor; empty for a load.
     """
 
     at: Point
     text: str
     kind: Kind
     on_body: bool = True
+    channel: str = ""
 
 
 Marks: TypeAlias = Callable[[Frame], list[Mark]]
@@ -88,10 +91,11 @@ def mark_placer(
     def marks(frame: Frame) -> list[Mark]:
         placed = []
         for sensor in sorted(drawn.geometry.sensors, key=lambda sensor: stations.index(sensor.on)):
+            name, channel = shortened(sensor.channel), sensor.channel
             if sensor.position is not None:
-                placed.append(Mark(frame.at(*project(sensor.position)), shortened(sensor.channel), "sensor"))
+                placed.append(Mark(frame.at(*project(sensor.position)), name, "sensor", channel=channel))
             elif sensor.wheel is not None:
-                placed.append(Mark(frame.at(*wheel(sensor.wheel)), shortened(sensor.channel), "sensor", False))
+                placed.append(Mark(frame.at(*wheel(sensor.wheel)), name, "sensor", False, channel))
         for load in drawn.geometry.loads:
             for item in load.items:
                 text = shortened(f"{load.name} {item.mass:.4g} kg")
@@ -147,7 +151,7 @@ def mark_shapes(mark: Mark) -> Iterator[Shape]:
     """
     (x, y), r = mark.at, _MARK
     if mark.kind == "sensor":
-        yield Disc(mark.at, r, "sensor", filled=mark.on_body)
+        yield Disc(mark.at, r, "sensor", filled=mark.on_body, about=mark.channel)
         return
     yield Stroke(((x - r, y - r), (x + r, y - r), (x + r, y + r), (x - r, y + r)), mark.kind, closed=True)
     yield Stroke(((x - r, y - r), (x + r, y + r)), mark.kind)

@@ -56,6 +56,8 @@ class Disc:
         Whether it shows an unknown position or length.
     filled
         Whether it is filled with its colour.
+    about
+        Channel of the sensor that it marks; empty for anything else.
     """
 
     centre: Point
@@ -63,6 +65,7 @@ class Disc:
     kind: Kind
     dashed: bool = False
     filled: bool = False
+    about: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,6 +111,10 @@ class Drawing:
         Of its frame, units.
     shapes
         Drawn in this order.
+    scale
+        Units per m; 0 for a drawing without a scale.
+    origin
+        Position of the centre of the front axle, on the ground or on the centreline.
     """
 
     title: str
@@ -115,3 +122,5 @@ class Drawing:
     width: float
     height: float
     shapes: tuple[Shape, ...]
+    scale: float = 0.0
+    origin: Point = (0.0, 0.0)

@@ -12,7 +12,7 @@ _HEAD = 5.0
 """Length of an arrowhead, units."""
 
 
-def sketch_svg(drawing: Drawing, style: str = "") -> str:
+def sketch_svg(drawing: Drawing, style: str = "", movable: bool = False) -> str:
     """Return a technical drawing as an SVG element.
 
     Parameters
@@ -21,28 +21,37 @@ def sketch_svg(drawing: Drawing, style: str = "") -> str:
         Any.
     style
         Style element to include, where the style of a page does not apply.
+    movable
+        Whether a script of the page moves the sensors: their marks then have their channels (``data-channel``), and the drawing
+        begins with its scale (``data-scale``, units per m, and ``data-origin``).
 
     Returns
     -------
     str
         An ``svg`` element; identical for identical drawings.
     """
-    content = style + shapes_svg(drawing.shapes)
+    content = style + shapes_svg(drawing.shapes, movable)
+    if movable:
+        (x, y), name = drawing.origin, escaped(drawing.title)
+        frame = f'data-view="{name}" data-scale="{drawing.scale:.6g}" data-origin="{x:.6g} {y:.6g}"'
+        content = f'<g class="frame" {frame}/>{content}'
     return svg_element("sketch", (drawing.width, drawing.height), drawing.title, drawing.description, content)
 
 
-def shapes_svg(shapes: tuple[Shape, ...]) -> str:
+def shapes_svg(shapes: tuple[Shape, ...], movable: bool = False) -> str:
     """Return shapes as the content of an ``svg`` element.
 
     Parameters
     ----------
     shapes
         Drawn in this order.
+    movable
+        As for `sketch_svg`.
     """
-    return "".join(part for shape in shapes for part in _elements(shape))
+    return "".join(part for shape in shapes for part in _elements(shape, movable))
 
 
-def _elements(shape: Shape) -> Iterator[str]:
+def _elements(shape: Shape, movable: bool) -> Iterator[str]:
     match shape:
         case Stroke():
             path = "L".join(f"{x:.1f} {y:.1f}" for x, y in shape.points)
@@ -52,7 +61,8 @@ def _elements(shape: Shape) -> Iterator[str]:
             yield from (f'<path class="head {shape.kind}" d="{_head(*end)}"/>' for end in ends)
         case Disc():
             (x, y), filled = shape.centre, " filled" if shape.filled else ""
-            yield f'<circle class="{_classes(shape)}{filled}" cx="{x:.1f}" cy="{y:.1f}" r="{shape.radius:.1f}"/>'
+            about = f' data-channel="{escaped(shape.about)}"' if movable and shape.about else ""
+            yield f'<circle class="{_classes(shape)}{filled}"{about} cx="{x:.1f}" cy="{y:.1f}" r="{shape.radius:.1f}"/>'
         case TextShape():
             x, y = shape.at
             place = f'x="{x:.1f}" y="{y:.1f}"' + (f' text-anchor="{shape.anchor}"' if shape.anchor != "start" else "")

@@ -1,0 +1,341 @@
+"""The page of a campaign: its file as a form or as text, checked while somebody writes, saved unless it changed meanwhile."""
+
+from __future__ import annotations
+
+import difflib
+import json
+import shlex
+from collections.abc import Mapping
+from typing import Any
+from urllib.parse import urlencode
+
+from markupsafe import Markup
+from starlette.exceptions import HTTPException
+from starlette.requests import Request
+from starlette.responses import JSONResponse, RedirectResponse, Response
+from starlette.routing import Route
+
+from sprung.app.commands import arguments, as_typed
+from sprung.app.forms import Form, read_form
+from sprung.app.queries import queries_of
+from sprung.app.rendering import render
+from sprung.app.tool_pages import required
+from sprung.app.workspace import NEW, ChangedError, OutsideError, Workspace
+from sprung.errors import InputError, Problem
+
+
+async def show(request: Request) -> Response:
+    """Answer with the page of a campaign file, as its form or as text."""
+    workspace: Workspace = request.app.state.workspace
+    name = _campaign(request)
+    text, version = workspace.read_text(name)
+    if version == NEW:
+        raise HTTPException(404, f"There is no file {name}. Draft it from the recordings on the page of the folder.")
+    if request.query_params.get("as") == "text":
+        return await _text_page(request, name, text, version, text)
+    try:
+        view = await _form_view(request, name, text)
+    except InputError as error:  # no TOML: only its text can be shown
+        return await _text_page(request, name, text, version, text, error.problems)
+    return _form_page(request, name, view, version, text, request.query_params.get("focus", ""))
+
+
+async def change(request: Request) -> Response:
+    """Save what was entered, or show the form again with what a button added or removed."""
+    workspace: Workspace = request.app.state.workspace
+    name = _campaign(request)
+    form = await read_form(request)
+    action, version, original = form.text("action") or "save", form.text("version"), _carried(form, "original")
+    if "text" in form:
+        return await _change_text(request, name, form, action, version, original)
+    save = action in {"save", "save over"}
+    try:
+        view = await _form_view(
+            request, name, _carried(form, "base"), form, "" if save or action == "as text" else action
+        )
+    except InputError as error:
+        view = await _form_view(request, name, _carried(form, "base"), form)
+        return _form_page(request, name, view, version, original, "", error.problems)
+    if action == "as text" and not view["unclear"]:
+        return await _text_page(request, name, view["text"], version, original)
+    if save and not view["unclear"]:
+        try:
+            workspace.write_text(name, view["text"], version)
+        except ChangedError:
+            return _conflict(request, name, view["text"])
+        return RedirectResponse(f"/campaign?{urlencode({'campaign': name, 'saved': 'yes'})}", 303)
+    return _form_page(request, name, view, version, original, _focus(action, view))
+
+
+async def live(request: Request) -> Response:
+    """Answer with the problems, gaps and sketch of what was entered, without saving it."""
+    name = _campaign(request)
+    form = await read_form(request)
+    original = _carried(form, "original")
+    path = str(request.app.state.workspace.path(name))
+    if "text" in form:
+        try:
+            text = _as_before(form.get("text", [""])[0], original)
+            found = await queries_of(request).ask("form", "form_view:text_view", path=path, text=text)
+        except InputError as error:
+            found = {"problems": [_document(problem) for problem in error.problems], "missing": []}
+        state = state_sentence(len(found["problems"]), len(found["missing"]))
+        return JSONResponse({**found, "state": state, "diff": _difference(original, text)})
+    view = await _form_view(request, name, _carried(form, "base"), form)
+    fields = {}
+    groups = {}
+    for group in view["form"]["groups"]:
+        for part in (group, *group["items"]):
+            groups[part["name"]] = [sentence(problem) for problem in part["problems"]]
+            for each in part["fields"]:
+                if each["problems"] or each["missing"]:
+                    problems = [sentence(problem) for problem in each["problems"]]
+                    fields[each["name"]] = {
+                        "problems": problems,
+                        "missing": each["missing"],
+                        "label": each["spec"]["label"],
+                    }
+    return JSONResponse(
+        {
+            "fields": fields,
+            "groups": groups,
+            "general": [*map(sentence, view["form"]["problems"]), *view["refused"]],
+            "state": state_sentence(view["form"]["faulty"], view["form"]["missing"]),
+            "sketch": view["sketch"],
+            "diff": _difference(original, view["text"]),
+        }
+    )
+
+
+async def drop(request: Request) -> Response:
+    """Answer with the picture of one drop's recording."""
+    name = _campaign(request)
+    workspace: Workspace = request.app.state.workspace
+    form = await read_form(request)
+    index = required(request, "drop")
+    found = await queries_of(request).ask(
+        "recording",
+        "drops_view:drop_view",
+        path=str(workspace.path(name)),
+        root=str(workspace.folder),
+        text=_carried(form, "base"),
+        entered=_inputs(form),
+        index=int(index) if index.isdecimal() and len(index) < 6 else -1,
+    )
+    return JSONResponse(found)
+
+
+def _campaign(request: Request) -> str:
+    """Return the name of the campaign file; no recording can be opened, or overwritten, as one."""
+    name = required(request, "campaign")
+    if not name.endswith(".toml"):
+        raise HTTPException(400, f"{name} is no campaign file, whose name ends in .toml.")
+    return name
+
+
+async def _change_text(request: Request, name: str, form: Form, action: str, version: str, original: str) -> Response:
+    text = _as_before(form.get("text", [""])[0], original)
+    if action not in {"save", "save over"}:
+        try:
+            return _form_page(request, name, await _form_view(request, name, text), version, original, "")
+        except InputError as error:
+            return await _text_page(request, name, text, version, original, error.problems)
+    try:
+        request.app.state.workspace.write_text(name, text, version)
+    except ChangedError:
+        return _conflict(request, name, text)
+    return RedirectResponse(f"/campaign?{urlencode({'campaign': name, 'as': 'text', 'saved': 'yes'})}", 303)
+
+
+async def _form_view(
+    request: Request, name: str, text: str, form: Form | None = None, action: str = ""
+) -> dict[str, Any]:
+    path = str(request.app.state.workspace.path(name))
+    entered = None if form is None else _inputs(form)
+    view: dict[str, Any] = await queries_of(request).ask(
+        "form", "form_view:form_view", path=path, text=text, entered=entered, action=action
+    )
+    return view
+
+
+def _inputs(form: Form) -> dict[str, list[str]]:
+    """Return the inputs of a form that are places in the file, which have a dot."""
+    return {key: values for key, values in form.items() if "." in key}
+
+
+def _form_page(
+    request: Request,
+    name: str,
+    view: Mapping[str, Any],
+    version: str,
+    original: str,
+    focus: str,
+    problems: tuple[Problem, ...] = (),
+) -> Response:
+    drawings = [{**each, "svg": Markup(each["svg"])} for each in view["sketch"]["drawings"]]  # noqa: S704 (escaped there)
+    groups = view["form"]["groups"]
+    return _page(
+        request,
+        "campaign.html",
+        name,
+        version,
+        original,
+        view["text"],
+        status=400 if view["unclear"] or problems else 200,
+        form=view["form"],
+        sections={
+            kind: [group for group in groups if group["section"] == kind]
+            for kind in ("vehicle", "known", "sensor", "load", "drop", "model", "test")
+        },
+        unclear=view["unclear"],
+        refused=view["refused"],
+        sketch={**view["sketch"], "drawings": drawings},
+        sentence=sentence,
+        state=state_sentence(view["form"]["faulty"], view["form"]["missing"]),
+        focus=focus,
+        problems=problems,
+    )
+
+
+async def _text_page(
+    request: Request, name: str, text: str, version: str, original: str, problems: tuple[Problem, ...] = ()
+) -> Response:
+    missing: list[Any] = []
+    found = [_document(problem) for problem in problems]
+    if not problems:
+        try:
+            path = str(request.app.state.workspace.path(name))
+            view = await queries_of(request).ask("form", "form_view:text_view", path=path, text=text)
+            found, missing = view["problems"], view["missing"]
+        except InputError as error:
+            found = [_document(problem) for problem in error.problems]
+    return _page(
+        request,
+        "campaign_text.html",
+        name,
+        version,
+        original,
+        text,
+        problems=found,
+        gaps=missing,
+        state=state_sentence(len(found), len(missing)),
+    )
+
+
+def _page(
+    request: Request,
+    template: str,
+    name: str,
+    version: str,
+    original: str,
+    text: str,
+    status: int = 200,
+    **context: Any,
+) -> Response:
+    workspace = request.app.state.workspace
+    commands, outside = [f"$EDITOR {shlex.quote(name)}"], ""
+    try:
+        commands += [as_typed(arguments(workspace, command, name)) for command in ("check", "identify", "plan")]
+    except OutsideError as error:  # it can be mended here, but not be run
+        outside = str(error)
+    return render(
+        request,
+        template,
+        status,
+        campaign=name,
+        version=version,
+        base=json.dumps(text),  # line ends of a form are changed by browsers, those in JSON are not
+        original=json.dumps(original),
+        text=text,
+        diff=_difference(original, text),
+        lines=commands,
+        outside=outside,
+        saved="saved" in request.query_params,
+        **context,
+    )
+
+
+def _conflict(request: Request, name: str, text: str) -> Response:
+    """Show both: the file as it is now, and what was to be saved."""
+    now, version = request.app.state.workspace.read_text(name)
+    return render(
+        request,
+        "conflict.html",
+        409,
+        campaign=name,
+        version=version,
+        original=json.dumps(now),
+        text=text,
+        now=now,
+        diff=_difference(now, text),
+    )
+
+
+def _focus(action: str, view: Mapping[str, Any]) -> str:
+    """Return the input that is to have the focus after a button was pressed."""
+    verb, _, what = action.partition(" ")
+    kind, _, rest = what.partition(" ")
+    groups = [group["name"] for group in view["form"]["groups"]]
+    if verb == "add" and kind in {"sensor", "load", "drop"}:
+        name = max((g for g in groups if g.startswith(f"{kind}.")), key=lambda g: int(g.split(".")[1]), default="")
+        return f"{name}.{'channel' if kind == 'sensor' else 'name' if kind == 'load' else 'file'}"
+    if verb == "add" and kind == "known":
+        return f"known.{rest}.value"
+    if verb == "add" and kind == "item":
+        group = next((group for group in view["form"]["groups"] if group["name"] == rest), None)
+        return f"{group['items'][-1]['name']}.mass.value" if group and group["items"] else ""
+    return f"add-{what.split('.')[0]}" if verb == "remove" else ""
+
+
+def sentence(problem: Mapping[str, str]) -> str:
+    """Return a problem beside its field as a sentence."""
+    return f"Found {problem['found']}; expected {problem['expected']}. {problem['do']}"
+
+
+def state_sentence(problems: int, gaps: int) -> str:
+    """Return how complete a campaign is.
+
+    Examples
+    --------
+    >>> state_sentence(1, 7), state_sentence(0, 0)
+    ('1 problem; 7 places to be filled in.', 'No problems; nothing is missing.')
+    """
+    wrong = f"{problems} problem{'s' if problems > 1 else ''}" if problems else "No problems"
+    missing = f"{gaps} place{'s' if gaps > 1 else ''} to be filled in" if gaps else "nothing is missing"
+    return f"{wrong}; {missing}."
+
+
+def _document(problem: Problem) -> dict[str, str]:
+    return {"where": problem.where, "found": problem.found, "expected": problem.expected, "do": problem.do}
+
+
+def _carried(form: Form, name: str) -> str:
+    """Return a text that the page carries as JSON."""
+    try:
+        text = json.loads(form.text(name) or '""')
+    except ValueError as error:
+        raise HTTPException(400, "The form is incomplete. Load the page again.") from error
+    if not isinstance(text, str):
+        raise HTTPException(400, "The form is incomplete. Load the page again.")
+    return text
+
+
+def _as_before(text: str, original: str) -> str:
+    """Return a text from a text field with the line ends of the file."""
+    windows = "\r\n" in original and "\n" not in original.replace("\r\n", "")
+    mark = "\ufeff" if original.startswith("\ufeff") else ""
+    return mark + (text.replace("\n", "\r\n") if windows else text).removeprefix(mark or "\ufeff")
+
+
+def _difference(old: str, new: str) -> list[str]:
+    """Return the lines of a file that are changed, as ``diff -u`` shows them."""
+    lines = difflib.unified_diff(old.splitlines(), new.splitlines(), n=1, lineterm="")
+    return [line for line in lines if not line.startswith(("---", "+++"))]
+
+
+routes = (
+    Route("/campaign", show),
+    Route("/campaign", change, methods=["POST"]),
+    Route("/campaign/live", live, methods=["POST"]),
+    Route("/campaign/drop", drop, methods=["POST"]),
+)

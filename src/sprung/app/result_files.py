@@ -1,0 +1,105 @@
+"""Results folders in the folder of the page: which there are, and what they contain."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from sprung.app.workspace import Workspace
+
+_MARK = "results.json"
+
+
+@dataclass(frozen=True, slots=True)
+class ResultsFolder:
+    """A results folder.
+
+    Attributes
+    ----------
+    name
+        Of the folder, relative to that of the page; empty for that itself.
+    modified
+        Time at which its results.json was written, s since 1970.
+    campaign
+        Campaign file beside it, by its name; empty if there is none.
+    """
+
+    name: str
+    modified: float
+    campaign: str
+
+    @property
+    def title(self) -> str:
+        """Name for people."""
+        return self.name or "this folder"
+
+
+def results_folders(workspace: Workspace) -> tuple[ResultsFolder, ...]:
+    """Return the results folders, the newest first."""
+    entries = {entry.name: entry for entry in workspace.listing().entries}
+    found = [
+        ResultsFolder(folder, entry.modified, campaign_beside(folder, tuple(entries)))
+        for name, entry in entries.items()
+        if (folder := folder_of(name)) is not None
+    ]
+    return tuple(sorted(found, key=lambda one: -one.modified))
+
+
+def folder_of(name: str) -> str | None:
+    """Return the folder of a results.json by its name; None for another file."""
+    folder, _, file = name.rpartition("/")
+    return folder if file == _MARK else None
+
+
+def campaign_beside(results: str, names: Sequence[str]) -> str:
+    """Return the campaign file from which a results folder was probably made: the one in the folder above it.
+
+    Parameters
+    ----------
+    results
+        Name of the results folder.
+    names
+        Files in the folder of the page.
+
+    Returns
+    -------
+    str
+        Empty if there is none, or several.
+
+    Examples
+    --------
+    >>> campaign_beside("bus/results", ["bus/campaign.toml", "bus/empty.csv"])
+    'bus/campaign.toml'
+    """
+    above = results.rpartition("/")[0] if results else None
+    if above is None:
+        return ""
+    start = f"{above}/" if above else ""
+    own = [
+        name
+        for name in names
+        if name.startswith(start) and name.endswith(".toml") and "/" not in name.removeprefix(start)
+    ]
+    usual = f"{start}campaign.toml"
+    return usual if usual in own else own[0] if len(own) == 1 else ""
+
+
+def results_path(workspace: Workspace, name: str) -> Path:
+    """Return the path of a results folder, whose files all lie in the folder of the page.
+
+    Parameters
+    ----------
+    workspace
+        The folder of the page.
+    name
+        Of the results folder in it; empty for the folder itself.
+
+    Raises
+    ------
+    OutsideError
+        If the folder or a file in it leads out.
+    """
+    for file in (_MARK, "series.npz"):
+        workspace.path(f"{name}/{file}" if name else file)
+    return workspace.path(name)

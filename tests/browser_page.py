@@ -1,0 +1,67 @@
+"""The local page in a real browser: Debian's Chromium, or whatever the system calls its own."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import pytest
+
+from served import Served
+
+
+@contextmanager
+def chromium() -> Iterator[Any]:
+    """Start the browser; a test is skipped where there is none."""
+    playwright = pytest.importorskip("playwright.sync_api")
+    program = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+    if program is None:
+        pytest.skip("needs Chromium")
+    with playwright.sync_playwright() as running:
+        browser = running.chromium.launch(executable_path=program, args=["--no-sandbox", "--disable-gpu"])
+        yield browser
+        browser.close()
+
+
+class Tabs:
+    """Tabs of one user, with everything that they complained about.
+
+    Attributes
+    ----------
+    complaints
+        Messages on the consoles and errors of scripts.
+    """
+
+    def __init__(self, browser: Any, server: Served, **context: Any) -> None:
+        self._context = browser.new_context(**{"viewport": {"width": 1280, "height": 900}, **context})
+        self._server = server
+        self.complaints: list[str] = []
+
+    def open(self, path: str = "") -> Any:
+        """Open the printed address in a new tab, or a page of the same user."""
+        tab = self._context.new_page()
+        tab.set_default_timeout(30_000)
+        tab.on("console", lambda message: self.complaints.append(f"{message.type}: {message.text}"))
+        tab.on("pageerror", lambda error: self.complaints.append(str(error)))
+        tab.goto(f"{self._server.origin}{path}" if path else self._server.address)
+        return tab
+
+    def close(self) -> None:
+        """Close the tabs; they must not have complained."""
+        self._context.close()
+        assert self.complaints == []
+
+
+@contextmanager
+def tabs(browser: Any, server: Served, **context: Any) -> Iterator[Tabs]:
+    """Open tabs on a server while the block runs; a first one gets the cookie."""
+    opened = Tabs(browser, server, **context)
+    try:
+        opened.open().close()
+        yield opened
+    except BaseException:
+        opened._context.close()
+        raise
+    opened.close()
