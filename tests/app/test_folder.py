@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import time
 from pathlib import Path
 from urllib.parse import quote
 
@@ -74,16 +73,14 @@ def test_names_are_no_markup(folder: Path) -> None:
 
 
 def test_three_hundred_recordings_are_seen_at_once(tmp_path: Path) -> None:
-    """300 recordings of 8 channels in 2 s at 250 Hz, and a campaign of all of them: under 5 s."""
+    """300 recordings of 8 channels, and a campaign of all of them; benchmarks/local_page.py measures how soon."""
     first = write_recordings(tmp_path / "first", ("empty",))[0].read_bytes()
     for number in range(300):
         (tmp_path / f"drop_{number:03}.csv").write_bytes(first)
     sections = "".join(f'[[drop]]\nfile = "drop_{number:03}.csv"\nwheels = ["fl"]\n' for number in range(300))
     (tmp_path / "campaign.toml").write_text(DRAFT.replace('[[drop]]\nfile = "a.csv"\n', sections))
     with served(tmp_path) as server:
-        begun = time.monotonic()
         page = server.ask("/").text
-        assert time.monotonic() - begun < 5
         assert "300 recordings" in page
         assert page.count('data-name="drop_') == 300
         assert server.memory() < 120

