@@ -51,7 +51,13 @@ def head(server: Served, path: str, method: str = "GET", more: str = "") -> byte
     return f"{method} {path} HTTP/1.1\r\n{own}".encode()
 
 
-@pytest.mark.parametrize("path", ["/", "/jobs", "/files/drop_7.csv", "/files/large.html"])
+@pytest.mark.parametrize(
+    "path",
+    [
+        "/",
+        *(pytest.param(path, marks=pytest.mark.long) for path in ("/jobs", "/files/drop_7.csv", "/files/large.html")),
+    ],
+)
 def test_a_thousand_requests_at_once_are_all_answered(server: Served, path: str) -> None:
     with opened(server, MANY) as connections:
         for connection in connections:

@@ -89,6 +89,7 @@ def test_a_result_says_what_to_measure_next_and_leads_on(user: Tabs) -> None:
     page.get_by_role("heading", name="Plan the next measurement").wait_for()
 
 
+@pytest.mark.long
 def test_results_are_compared(user: Tabs) -> None:
     page = user.open("/compare")
     page.get_by_label("Compare before/results").check()
@@ -130,6 +131,7 @@ def test_a_campaign_is_validated_and_drawn(user: Tabs, server: Served) -> None:
     assert "Verdict: accept" in page.locator("#outcome pre").inner_text()
 
 
+@pytest.mark.long
 def test_a_plan_is_made_with_a_decimal_comma(user: Tabs) -> None:
     page = user.open(PAGES[3])
     page.get_by_label("Largest acceptable").fill("0,5")
@@ -297,6 +299,7 @@ def test_recordings_are_shown_side_by_side(user: Tabs, tmp_path: Path) -> None:
     page.wait_for_function("() => !new URLSearchParams(location.search).has('low')")
 
 
+@pytest.mark.long
 def test_every_page_fits_and_every_field_has_a_name(user: Tabs) -> None:
     for path in PAGES:
         page = user.open(path)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from sprung.display import shown
 from sprung.errors import InputError, Problem, Problems
 
 if TYPE_CHECKING:
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
 # The models of the files are imported where a file is checked: whoever has a campaign needs none of them.
 
 
+@shown
 @dataclass(frozen=True, eq=False)
 class CheckedDocument:
     """What a campaign file states, and what is wrong with it.
