@@ -1,6 +1,7 @@
 """Campaigns from a vehicle: drops from blocks, pushes, passes over a bump and free decays, measured with real sensors."""
 
-from sprung.campaign import Bump, Push
+from sprung.campaign import Bump as Bump
+from sprung.campaign import Push as Push
 from sprung.simulation.acting import Acting, Excited
 from sprung.simulation.arguments import default_drops, default_sensors
 from sprung.simulation.bump_passage import half_sine_bumps
@@ -21,12 +22,10 @@ __all__ = [
     "USUAL_NOISE",
     "Acting",
     "BlockSupport",
-    "Bump",
     "DrivenMotion",
     "DropMotion",
     "Excited",
     "PadMotion",
-    "Push",
     "SimulationSetup",
     "default_drops",
     "default_sensors",
