@@ -10,8 +10,9 @@ import pytest
 
 from sprung.app.campaign_form import CampaignForm, Field, campaign_form
 from sprung.app.campaign_text import apply_changes
+from sprung.app.decimals import number_literal
 from sprung.app.form_actions import apply_action
-from sprung.app.form_changes import number_literal, understand, with_problems
+from sprung.app.form_changes import understand, with_problems
 from sprung.campaign import schema_text
 from sprung.errors import InputError
 

@@ -254,11 +254,11 @@ def test_the_motion_turns_stops_and_is_saved_on_white(user: Tabs, tmp_path: Path
 def test_recordings_are_shown_side_by_side(user: Tabs, tmp_path: Path) -> None:
     page = user.open("/recordings")
     page.get_by_label("Search files and channels").fill("after/empty_b")
-    page.get_by_label("empty_bounce.csv").and_(page.locator(":visible")).check()
+    page.get_by_role("checkbox", name="empty_bounce.csv").check()
     page.get_by_label("Search files and channels").fill("before/empty_bounce")
-    page.get_by_label("empty_bounce.csv").and_(page.locator(":visible")).check()
+    page.get_by_role("checkbox", name="empty_bounce.csv").check()
     page.get_by_label("Search files and channels").fill("")
-    page.get_by_label("wheel_fl").check()
+    page.get_by_role("checkbox", name="wheel_fl").check()
     page.wait_for_function(
         "() => document.querySelectorAll('#plot path.curve').length === 4"
     )  # two channels of two files

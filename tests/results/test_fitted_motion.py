@@ -122,7 +122,7 @@ def test_forces_beyond_the_model_are_found(linear: Result) -> None:
     )  # fmt: skip
     readings = read.readout.of_accelerations(read.readout.at(read.readings)) @ accelerations(time, moved.y)
     noise = np.random.default_rng(3).normal(size=readings.shape) * read.noise[:, None]
-    found = excess_forces(read, readings + noise, time, drop)
+    found = excess_forces(read, readings + noise, time)
     truth = forces(time)
     for own, true, level in zip(found.force, truth, found.noise, strict=True):
         assert np.std(own - true) < level
@@ -132,7 +132,7 @@ def test_forces_beyond_the_model_are_found(linear: Result) -> None:
     assert together.std() < 0.35 * truth.sum(axis=0).std()
     rates = read.model.velocities(read.values) @ moved.y
     assert np.abs(found.velocity - rates).max() < 0.05 * np.abs(rates).max()
-    nothing = excess_forces(read, noise, time, drop)
+    nothing = excess_forces(read, noise, time)
     assert np.all(np.std(nothing.force, axis=1) < 1.3 * nothing.noise)
     assert np.all(nothing.noise < 0.1 * np.std(truth, axis=1))
 

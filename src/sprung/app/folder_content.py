@@ -5,24 +5,19 @@ Names and the texts of small files only; no recording is opened, so that hundred
 
 from __future__ import annotations
 
-import json
 import tomllib
 from collections.abc import Iterator, Mapping
-from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import PurePosixPath
 from typing import Any
 
-from sprung.app.result_files import folder_of
-from sprung.app.workspace import Entry, Listing, OutsideError, Workspace
+from sprung.app.result_files import folder_of, stored_result
+from sprung.app.workspace import Entry, Listing, OutsideError, Workspace, inside, parent_of
 from sprung.errors import InputError
 from sprung.files import NO_RECORDINGS
 
 _MOST_OPENED = 200
 """Most campaign files and results that are opened for what they say, the newest first."""
-
-_LARGEST = 2_000_000
-"""Largest results.json that is opened, bytes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,10 +121,10 @@ def folder_content(workspace: Workspace) -> FolderContent:
     listing = workspace.listing()
     results = tuple(_results(workspace, listing))
     made = {result.name for result in results} | {
-        _parent(entry.name) for entry in listing.entries if PurePosixPath(entry.name).name == "check.html"
+        parent_of(entry.name) for entry in listing.entries if PurePosixPath(entry.name).name == "check.html"
     }
     own = [entry for entry in listing.entries if not any(_is_in(entry.name, folder) for folder in made if folder)]
-    beside = {_parent(result.name): result for result in reversed(results)}
+    beside = {parent_of(result.name): result for result in reversed(results)}
     campaigns = tuple(_campaigns(workspace, own, beside))
     recordings = tuple(_recordings(own, {campaign.name for campaign in campaigns}))
     folders = ("", *(entry.name for entry in own if entry.is_folder and entry.name not in made))
@@ -153,7 +148,7 @@ def _campaigns(
             _gaps(document),
             fault,
             entry.modified,
-            results.get(_parent(entry.name)),
+            results.get(parent_of(entry.name)),
         )
 
 
@@ -178,11 +173,7 @@ def _gaps(node: Any) -> int:
 def _results(workspace: Workspace, listing: Listing) -> Iterator[ResultEntry]:
     found = [(entry, folder) for entry in listing.entries if (folder := folder_of(entry.name)) is not None]
     for number, (entry, folder) in enumerate(sorted(found, key=lambda pair: -pair[0].modified)):
-        document: Any = {}
-        if number < _MOST_OPENED and entry.size <= _LARGEST:
-            with suppress(OSError, ValueError, OutsideError, RecursionError):
-                document = json.loads(workspace.path(entry.name).read_text(encoding="utf-8"))
-        document = document if isinstance(document, dict) else {}
+        document = stored_result(workspace, folder) if number < _MOST_OPENED else {}
         vehicle, verdict = document.get("vehicle"), document.get("verdict")
         name = vehicle.get("name") if isinstance(vehicle, dict) else vehicle
         state = verdict.get("state") if isinstance(verdict, dict) else ""
@@ -193,24 +184,20 @@ def _recordings(entries: list[Entry], campaigns: set[str]) -> Iterator[Recording
     files: dict[str, list[Entry]] = {}
     for entry in entries:
         if not entry.is_folder and PurePosixPath(entry.name).suffix.lower() not in NO_RECORDINGS:
-            files.setdefault(_parent(entry.name), []).append(entry)
+            files.setdefault(parent_of(entry.name), []).append(entry)
     for folder, own in sorted(files.items()):
         yield RecordingFolder(folder, tuple(own), _campaign_of(folder, campaigns))
 
 
 def _campaign_of(folder: str, campaigns: set[str]) -> str:
     while True:
-        inside = sorted(name for name in campaigns if _parent(name) == folder)
-        if inside:
-            usual = f"{folder}/campaign.toml" if folder else "campaign.toml"
-            return usual if usual in inside else inside[0]
+        here = sorted(name for name in campaigns if parent_of(name) == folder)
+        if here:
+            usual = inside(folder, "campaign.toml")
+            return usual if usual in here else here[0]
         if not folder:
             return ""
-        folder = _parent(folder)
-
-
-def _parent(name: str) -> str:
-    return name.rpartition("/")[0]
+        folder = parent_of(folder)
 
 
 def _is_in(name: str, folder: str) -> bool:

@@ -16,6 +16,7 @@ from sprung.report import (
     STRUTS,
     SolidFrame,
     damper_cloud_pictures,
+    mode_caption,
     picture_svg,
     solid_frame,
 )
@@ -69,7 +70,7 @@ def scene(folder: str) -> dict[str, Any]:
             {
                 "load": load,
                 "name": mode.name,
-                "caption": _caption(mode),
+                "caption": mode_caption(mode),
                 "frequency": mode.damped_frequency,
                 "creeps": mode.pole[1] == 0,
                 **shape,
@@ -81,17 +82,6 @@ def scene(folder: str) -> dict[str, Any]:
         "drops": [] if why else [drop.name for drop in result.drops if drop.name in series],
         "why": why,
     }
-
-
-def _caption(mode: Any) -> str:
-    if mode.pole[1] == 0:
-        return "overdamped"
-    damping = (
-        "damping not determined"
-        if mode.damping_ratio_std is None
-        else f"damping ratio {100 * mode.damping_ratio:.1f} %"
-    )
-    return f"{mode.frequency:.4g} Hz, {damping}"
 
 
 def _shape(frame: SolidFrame, motion: tuple[tuple[float, float], ...]) -> dict[str, Any] | None:

@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
-from sprung.app.workspace import Workspace
+from sprung.app.workspace import OutsideError, Workspace, inside, parent_of
+from sprung.errors import InputError
 
 _MARK = "results.json"
+
+_LARGEST = 2_000_000
+"""Largest results.json that is opened for what it says, bytes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,8 +54,17 @@ def results_folders(workspace: Workspace) -> tuple[ResultsFolder, ...]:
 
 def folder_of(name: str) -> str | None:
     """Return the folder of a results.json by its name; None for another file."""
-    folder, _, file = name.rpartition("/")
-    return folder if file == _MARK else None
+    folder = parent_of(name)
+    return folder if name == inside(folder, _MARK) else None
+
+
+def stored_result(workspace: Workspace, folder: str) -> dict[str, Any]:
+    """Return the content of the results.json in a folder; empty where there is none that can be opened."""
+    try:
+        document = json.loads(workspace.read_text(inside(folder, _MARK), _LARGEST)[0])
+    except (InputError, OutsideError, ValueError, RecursionError):
+        return {}
+    return document if isinstance(document, dict) else {}
 
 
 def campaign_beside(results: str, names: Sequence[str]) -> str:
@@ -72,10 +87,10 @@ def campaign_beside(results: str, names: Sequence[str]) -> str:
     >>> campaign_beside("bus/results", ["bus/campaign.toml", "bus/empty.csv"])
     'bus/campaign.toml'
     """
-    above = results.rpartition("/")[0] if results else None
-    if above is None:
+    if not results:
         return ""
-    start = f"{above}/" if above else ""
+    above = parent_of(results)
+    start = inside(above, "")
     own = [
         name
         for name in names
@@ -101,5 +116,5 @@ def results_path(workspace: Workspace, name: str) -> Path:
         If the folder or a file in it leads out.
     """
     for file in (_MARK, "series.npz"):
-        workspace.path(f"{name}/{file}" if name else file)
+        workspace.path(inside(name, file))
     return workspace.path(name)

@@ -12,6 +12,7 @@ from starlette.requests import Request
 from starlette.responses import RedirectResponse, Response
 
 from sprung.app.commands import as_typed, start
+from sprung.app.decimals import number_literal
 from sprung.app.jobs import Job
 from sprung.app.rendering import render
 from sprung.errors import InputError, Problem, Problems
@@ -123,10 +124,8 @@ def read_number(text: str, where: str, low: float, high: float, what: str) -> fl
     text = text.strip()
     if not text:
         return None
-    try:
-        number = float(text.replace(",", "."))
-    except ValueError:
-        number = float("nan")
+    literal = number_literal(text)
+    number = float("nan" if literal is None else literal)
     if not low <= number <= high:
         raise InputError([Problem(where, f"'{text}'", what, "Write one number, such as 1.5 or 1,5.")])
     return number

@@ -328,6 +328,16 @@ class Workspace:
                 recover(folder, ())
 
 
+def parent_of(name: str) -> str:
+    """Return the name of the folder of a file or folder; empty for the folder of the page."""
+    return name.rpartition("/")[0]
+
+
+def inside(folder: str, name: str) -> str:
+    """Return the name of a file by the name of its folder, which is empty for the folder of the page."""
+    return f"{folder}/{name}" if folder else name
+
+
 def unwritable(name: str, error: OSError) -> InputError:
     """Return the error of a file that cannot be written."""
     found = f"a place that cannot be written to ({error.strerror or error})"

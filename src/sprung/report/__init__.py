@@ -15,6 +15,7 @@ from sprung.report.folder import (
     write_report,
     write_validation,
 )
+from sprung.report.page.animation import mode_caption
 from sprung.report.page.check import CHECK_FILE, check_html
 from sprung.report.page.fleet import FLEET_FILE, fleet_html
 from sprung.report.page.pdf import pdf_of
@@ -95,6 +96,7 @@ __all__ = [
     "fleet_pictures",
     "fleet_view",
     "landing_picture",
+    "mode_caption",
     "modes_view",
     "monte_carlo_view",
     "motion_picture",

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from sprung.display import shown
 from sprung.results.excess_force import damper_travel_rows, excess_forces
-from sprung.results.motion import ReadDrop, fitted_motion, read_drop
+from sprung.results.motion import ReadDrop, motion_of, read_drop
 from sprung.vehicle import STATIONS, Wheel, parameter_name
 
 if TYPE_CHECKING:
@@ -78,11 +78,12 @@ def damper_points(result: Result, drop: str) -> tuple[DamperPoints, ...]:
     sensor from the model thus appears as a force of a damper: the points show by how much, and where, the recordings contradict
     the curve; they are no estimate of it.
     """
-    read, motion = read_drop(result, drop), fitted_motion(result, drop)
+    read = read_drop(result, drop)
+    motion = motion_of(result, read)
     series = result.series[drop]
     rows = damper_travel_rows(read)
     travel, rate = rows @ motion.motion.displacement, rows @ motion.motion.velocity
-    excess = excess_forces(read, np.asarray(series.measured - series.fitted, dtype=float), motion.time, drop)
+    excess = excess_forces(read, np.asarray(series.measured - series.fitted, dtype=float), motion.time)
     found = []
     for i, wheel in enumerate(read.vehicle.layout.wheels):
         curve = _curve(result, wheel)

@@ -46,7 +46,7 @@ class ExcessForces(NamedTuple):
     velocity: Real
 
 
-def excess_forces(read: ReadDrop, residuals: Real, time: Real, drop: str) -> ExcessForces:
+def excess_forces(read: ReadDrop, residuals: Real, time: Real) -> ExcessForces:
     """Return the forces of the dampers that explain what the model leaves of the accelerations.
 
     Parameters
@@ -57,8 +57,6 @@ def excess_forces(read: ReadDrop, residuals: Real, time: Real, drop: str) -> Exc
         Measured minus fitted readings, SI, shape (channel, time).
     time
         s, shape (time,).
-    drop
-        Its name, for the message.
 
     Returns
     -------
@@ -91,7 +89,7 @@ def excess_forces(read: ReadDrop, residuals: Real, time: Real, drop: str) -> Exc
     if len(strengths) < forces or strengths[-1] < _RANK * strengths[0]:
         found = f"{len(noise)} accelerometers that do not tell the forces of {forces} dampers apart"
         do = "An accelerometer on every wheel would show them."
-        raise InputError([Problem(f"drop {drop}", found, "accelerometers that determine each", do)])
+        raise InputError([Problem(f"drop {read.name}", found, "accelerometers that determine each", do)])
     A = state_matrix(highest, massive)
     size = len(A)
     push = np.zeros((size, forces))

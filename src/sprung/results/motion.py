@@ -80,6 +80,8 @@ class ReadDrop:
 
     Attributes
     ----------
+    name
+        Of the drop.
     vehicle
         The identified vehicle.
     load
@@ -94,6 +96,7 @@ class ReadDrop:
         Of each channel, SI root-mean-square, shape (channel,).
     """
 
+    name: str
     vehicle: Vehicle
     load: Load
     model: LinearModel
@@ -134,6 +137,7 @@ def read_drop(result: Result, drop: str) -> ReadDrop:
     # Readings depend on the parameters at first touch, and on what was found of the sensors.
     unknowns = {sensor_unknown(one.quantity, one.channel): one.value for one in result.sensors}
     return ReadDrop(
+        name=drop,
         vehicle=vehicle,
         load=load,
         model=model,
@@ -173,8 +177,12 @@ def fitted_motion(result: Result, drop: str) -> FittedMotion:
     and the offsets of the accelerometers, are a parabola in time, which is removed with weights that are largest where the
     motion has died away: there the vehicle rests.
     """
-    read = read_drop(result, drop)
-    series = result.series[drop]
+    return motion_of(result, read_drop(result, drop))
+
+
+def motion_of(result: Result, read: ReadDrop) -> FittedMotion:
+    """Return the motion of the vehicle in a drop that was read; see `fitted_motion`."""
+    drop, series = read.name, result.series[read.name]
     time = np.asarray(series.time, dtype=float)
     nearest, fitted = _nearest_decay(read, time, np.asarray(series.fitted, dtype=float))
     usable = read.usable
@@ -186,7 +194,7 @@ def fitted_motion(result: Result, drop: str) -> FittedMotion:
     motion = nearest
     if deviation > EXACT:
         begins = next((one.start for one in result.drops if one.name == drop and one.start is not None), time[0])
-        motion = _corrected(read, drop, time, nearest, difference, deviation, time >= begins)
+        motion = _corrected(read, time, nearest, difference, deviation, time >= begins)
     names = coordinates(tuple(read.vehicle.parameters))
     return FittedMotion(drop, read.load.name, time, names, motion, deviation)
 
@@ -227,7 +235,6 @@ def _propagators(A: Real, step: float, samples: int) -> Real:
 
 def _corrected(
     read: ReadDrop,
-    drop: str,
     time: Real,
     nearest: Motion,
     difference: Real,
@@ -245,7 +252,7 @@ def _corrected(
             return nearest
         found = f"a vehicle whose fitted motion differs by {100 * deviation:.0f} % from that of a linear one"
         do = "Accelerometers on every wheel and at three places of the body would show it."
-        raise InputError([Problem(f"drop {drop}", found, "accelerometers that determine its motion", do)])
+        raise InputError([Problem(f"drop {read.name}", found, "accelerometers that determine its motion", do)])
     of_usable = which[read.usable]
     missing = inverse @ (difference[of_usable] / read.noise[which, None])
     missing = np.where(determined[:, None], missing, 0.0)

@@ -6,6 +6,7 @@ import difflib
 import json
 import shlex
 from collections.abc import Mapping
+from dataclasses import asdict
 from typing import Any
 from urllib.parse import urlencode
 
@@ -45,16 +46,16 @@ async def change(request: Request) -> Response:
     workspace: Workspace = request.app.state.workspace
     name = _campaign(request)
     form = await read_form(request)
-    action, version, original = form.text("action") or "save", form.text("version"), _carried(form, "original")
+    action, version, original = form.text("action") or "save", form.text("version"), _hidden_text(form, "original")
     if "text" in form:
         return await _change_text(request, name, form, action, version, original)
     save = action in {"save", "save over"}
     try:
         view = await _form_view(
-            request, name, _carried(form, "base"), form, "" if save or action == "as text" else action
+            request, name, _hidden_text(form, "base"), form, "" if save or action == "as text" else action
         )
     except InputError as error:
-        view = await _form_view(request, name, _carried(form, "base"), form)
+        view = await _form_view(request, name, _hidden_text(form, "base"), form)
         return _form_page(request, name, view, version, original, "", error.problems)
     if action == "as text" and not view["unclear"]:
         return await _text_page(request, name, view["text"], version, original)
@@ -71,17 +72,17 @@ async def live(request: Request) -> Response:
     """Answer with the problems, gaps and sketch of what was entered, without saving it."""
     name = _campaign(request)
     form = await read_form(request)
-    original = _carried(form, "original")
+    original = _hidden_text(form, "original")
     path = str(request.app.state.workspace.path(name))
     if "text" in form:
         try:
             text = _as_before(form.get("text", [""])[0], original)
             found = await queries_of(request).ask("form", "form_view:text_view", path=path, text=text)
         except InputError as error:
-            found = {"problems": [_document(problem) for problem in error.problems], "missing": []}
+            found = {"problems": [asdict(problem) for problem in error.problems], "missing": []}
         state = state_sentence(len(found["problems"]), len(found["missing"]))
         return JSONResponse({**found, "state": state, "diff": _difference(original, text)})
-    view = await _form_view(request, name, _carried(form, "base"), form)
+    view = await _form_view(request, name, _hidden_text(form, "base"), form)
     fields = {}
     groups = {}
     for group in view["form"]["groups"]:
@@ -118,7 +119,7 @@ async def drop(request: Request) -> Response:
         "drops_view:drop_view",
         path=str(workspace.path(name)),
         root=str(workspace.folder),
-        text=_carried(form, "base"),
+        text=_hidden_text(form, "base"),
         entered=_inputs(form),
         index=int(index) if index.isdecimal() and len(index) < 6 else -1,
     )
@@ -201,14 +202,14 @@ async def _text_page(
     request: Request, name: str, text: str, version: str, original: str, problems: tuple[Problem, ...] = ()
 ) -> Response:
     missing: list[Any] = []
-    found = [_document(problem) for problem in problems]
+    found = [asdict(problem) for problem in problems]
     if not problems:
         try:
             path = str(request.app.state.workspace.path(name))
             view = await queries_of(request).ask("form", "form_view:text_view", path=path, text=text)
             found, missing = view["problems"], view["missing"]
         except InputError as error:
-            found = [_document(problem) for problem in error.problems]
+            found = [asdict(problem) for problem in error.problems]
     return _page(
         request,
         "campaign_text.html",
@@ -305,12 +306,8 @@ def state_sentence(problems: int, gaps: int) -> str:
     return f"{wrong}; {missing}."
 
 
-def _document(problem: Problem) -> dict[str, str]:
-    return {"where": problem.where, "found": problem.found, "expected": problem.expected, "do": problem.do}
-
-
-def _carried(form: Form, name: str) -> str:
-    """Return a text that the page carries as JSON."""
+def _hidden_text(form: Form, name: str) -> str:
+    """Return the text in a hidden field, which holds it as JSON."""
     try:
         text = json.loads(form.text(name) or '""')
     except ValueError as error:

@@ -14,7 +14,7 @@ from sprung.app.forms import Form, read_form
 from sprung.app.queries import queries_of
 from sprung.app.result_files import results_path
 from sprung.app.tool_pages import document_of, job_of, read_number, required, show_tool, start_tool
-from sprung.app.workspace import OutsideError, Workspace
+from sprung.app.workspace import OutsideError, Workspace, inside
 from sprung.errors import InputError, Problem, Problems
 
 
@@ -67,7 +67,7 @@ async def export(request: Request) -> Response:
             raise InputError([Problem("Format", f"'{to}'", expected, "Press the button of a format.")])
         options: dict[str, Value] = {"to": to, **_options(form, known[to]), "json": True}
         parquet = to == "draws" and form.text("table") == "parquet"
-        output = f"{results}/draws.parquet".removeprefix("/") if parquet else None
+        output = inside(results, "draws.parquet") if parquet else None
         command = arguments(request.app.state.workspace, "export", results, output=output, options=options)
     except InputError as error:
         return await _page(request, fields, error.problems)

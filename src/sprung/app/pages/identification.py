@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from typing import Any
 from urllib.parse import urlencode
@@ -11,16 +10,13 @@ from starlette.requests import Request
 from starlette.responses import RedirectResponse, Response
 from starlette.routing import Route
 
-from sprung.app.commands import arguments, as_typed, start
+from sprung.app.commands import arguments, as_typed
 from sprung.app.forms import Form, read_form
 from sprung.app.jobs import Job
 from sprung.app.pages.folder import date_text
-from sprung.app.tool_pages import required, show_tool
-from sprung.app.workspace import Workspace
-from sprung.errors import InputError
-
-_LARGEST = 2_000_000
-"""Largest results.json that is opened for its verdict, bytes."""
+from sprung.app.result_files import results_path, stored_result
+from sprung.app.tool_pages import required, show_tool, start_tool
+from sprung.app.workspace import Workspace, inside, parent_of
 
 _TITLES = {"check": "Check", "identify": "Identify"}
 
@@ -29,7 +25,7 @@ def show_check(request: Request) -> Response:
     """Answer with the check of a campaign's recordings: the page that was written last, or the job that writes it."""
     workspace: Workspace = request.app.state.workspace
     name = required(request, "campaign")
-    page = _inside(_folder_of(name), "check/check.html")
+    page = inside(parent_of(name), "check/check.html")
     path = workspace.path(page)
     written = path.stat().st_mtime if path.is_file() else 0.0
     changed = max((entry.modified for entry in _sources(workspace, name)), default=0.0)
@@ -54,16 +50,16 @@ def show_identification(request: Request) -> Response:
     """Answer with the options of an identification, or the job that does it."""
     workspace: Workspace = request.app.state.workspace
     name = required(request, "campaign")
-    output = request.query_params.get("output") or _inside(_folder_of(name), "results")
-    workspace.path(output)
-    document = _result_in(workspace, output)
+    output = request.query_params.get("output") or inside(parent_of(name), "results")
+    results_path(workspace, output)
+    verdict = _verdict_in(workspace, output)
     return _show(
         request,
         "identify.html",
         name,
         output=output,
-        existing=document,
-        existing_date=date_text(workspace.path(_inside(output, "results.json")).stat().st_mtime) if document else "",
+        verdict=verdict,
+        existing_date=date_text(workspace.path(inside(output, "results.json")).stat().st_mtime) if verdict else "",
         line=as_typed(arguments(workspace, "identify", name, output=output)),
     )
 
@@ -76,7 +72,7 @@ async def identify(request: Request) -> Response:
         "fall": {"yes": True, "no": False}.get(form.text("fall")),
         "force": form.text("force") == "yes" or None,
     }
-    output = form.text("output").strip("/") or _inside(_folder_of(required(request, "campaign")), "results")
+    output = form.text("output").strip("/") or inside(parent_of(required(request, "campaign")), "results")
     return _start(request, "identify", options, output)
 
 
@@ -87,12 +83,10 @@ def _profiled(form: Form) -> list[str]:
 
 
 def _start(request: Request, command: str, options: Mapping[str, Any], output: str | None = None) -> Response:
-    state = request.app.state
     name = required(request, "campaign")
-    line = arguments(state.workspace, command, name, output=output, options=options)
-    job = start(state.jobs, state.workspace, line, f"{_TITLES[command]} {name}")
-    query = {"campaign": name, "job": job.id} | ({"output": output} if output else {})
-    return RedirectResponse(f"/{command}?{urlencode(query)}", 303)
+    line = arguments(request.app.state.workspace, command, name, output=output, options=options)
+    query = {"campaign": name} | ({"output": output} if output else {})
+    return start_tool(request, line, f"{_TITLES[command]} {name}", query)
 
 
 def _show(request: Request, template: str, name: str, **context: Any) -> Response:
@@ -117,25 +111,14 @@ def _running(request: Request, command: str, name: str) -> Job | None:
 
 def _sources(workspace: Workspace, name: str) -> list[Any]:
     """Return the campaign file and the files beside it."""
-    folder = _folder_of(name)
+    folder = parent_of(name)
     return [entry for entry in workspace.listing(folder, 0).entries if not entry.is_folder]
 
 
-def _result_in(workspace: Workspace, folder: str) -> dict[str, Any] | None:
-    """Return the verdict of the result in a folder; None where there is none."""
-    try:
-        document = json.loads(workspace.read_text(_inside(folder, "results.json"), _LARGEST)[0])
-        return {"verdict": str(document["verdict"]["state"])}
-    except (InputError, ValueError, LookupError, TypeError, RecursionError):
-        return None
-
-
-def _folder_of(name: str) -> str:
-    return name.rpartition("/")[0]
-
-
-def _inside(folder: str, name: str) -> str:
-    return f"{folder}/{name}" if folder else name
+def _verdict_in(workspace: Workspace, folder: str) -> str:
+    """Return the state of the verdict of the result in a folder; empty where there is none."""
+    verdict = stored_result(workspace, folder).get("verdict")
+    return str(verdict.get("state", "")) if isinstance(verdict, dict) else ""
 
 
 routes = (

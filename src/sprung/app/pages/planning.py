@@ -10,7 +10,7 @@ from sprung.app.commands import arguments
 from sprung.app.forms import Form, read_form
 from sprung.app.jobs import Job
 from sprung.app.tool_pages import job_of, read_number, required, show_tool, start_tool
-from sprung.app.workspace import Workspace
+from sprung.app.workspace import Workspace, inside, parent_of
 from sprung.errors import InputError, Problem
 
 
@@ -36,7 +36,7 @@ async def validate(request: Request) -> Response:
 
 
 def _validation_folder(campaign: str) -> str:
-    return f"{campaign.rpartition('/')[0]}/validation".removeprefix("/")
+    return inside(parent_of(campaign), "validation")
 
 
 def _of_job(request: Request, drawings: list[str]) -> list[str]:

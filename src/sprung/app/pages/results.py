@@ -11,6 +11,7 @@ from sprung.app.commands import arguments, as_typed
 from sprung.app.queries import queries_of
 from sprung.app.result_files import campaign_beside, results_folders, results_path
 from sprung.app.tool_pages import required, show_tool, start_tool
+from sprung.app.workspace import inside
 
 _FILES = (
     ("report.html", "Report, one page that opens offline"),
@@ -26,8 +27,7 @@ async def show(request: Request) -> Response:
     name = required(request, "results")
     folder = results_path(workspace, name)
     result = await queries_of(request).ask("form", "result_view:summary", folder=str(folder))
-    below = f"{name}/" if name else ""
-    files = [(f"{below}{file}", text) for file, text in _FILES if workspace.path(f"{below}{file}").is_file()]
+    files = [(inside(name, file), text) for file, text in _FILES if workspace.path(inside(name, file)).is_file()]
     campaign = campaign_beside(name, [entry.name for entry in workspace.listing().entries])
     lines = [as_typed(arguments(workspace, "report", name))]
     if campaign:

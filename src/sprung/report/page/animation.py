@@ -38,7 +38,7 @@ def mode_drawings(car: WireFrame, modes: Sequence[ModeEstimate]) -> Iterator[dic
             "circles": [
                 (*(f"{part:.1f}" for part in moved[node].tolist()), f"{radius:.1f}") for node, radius in car.circles
             ],
-            "caption": _caption(mode),
+            "caption": mode_caption(mode),
             "description": f"{mode.name}: wire frame in the shape of this mode",
         }
 
@@ -56,7 +56,19 @@ def _lines(pairs: Sequence[tuple[int, int]], places: Real) -> str:
     return "".join(f"M{places[i, 0]:.1f} {places[i, 1]:.1f}L{places[j, 0]:.1f} {places[j, 1]:.1f}" for i, j in pairs)
 
 
-def _caption(mode: ModeEstimate) -> str:
+def mode_caption(mode: ModeEstimate) -> str:
+    """Return frequency and damping ratio of a mode, below its picture.
+
+    Parameters
+    ----------
+    mode
+        Of a load.
+
+    Returns
+    -------
+    str
+        In Hz and percent.
+    """
     if mode.pole[1] == 0:
         return "overdamped"
     description = (
