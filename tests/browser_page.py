@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
@@ -23,6 +23,15 @@ def chromium() -> Iterator[Any]:
         browser = running.chromium.launch(executable_path=program, args=["--no-sandbox", "--disable-gpu"])
         yield browser
         browser.close()
+
+
+def wait_until(page: Any, condition: Callable[[], bool], seconds: float = 10.0) -> None:
+    """Wait until a condition holds: how quick the machine is decides nothing."""
+    for _ in range(round(50 * seconds)):
+        if condition():
+            return
+        page.wait_for_timeout(20)
+    assert condition()
 
 
 class Tabs:
@@ -51,7 +60,7 @@ class Tabs:
     def _note(self, message: Any) -> None:
         # A test that clicks before the page has set its focus is a user who is quick, not a fault of the page.
         if not message.text.startswith("Autofocus processing was blocked"):
-            self.complaints.append(f"{message.type} on {message.location['url']}: {message.text}")
+            self.complaints.append(f"{message.type}: {message.text}")
 
     def close(self) -> None:
         """Close the tabs; they must not have complained."""

@@ -18,6 +18,7 @@ import pytest
 from matplotlib import image
 
 import sprung
+from browser_page import wait_until
 from command_line import run
 from sprung.report import add_report, report_html, save_result
 from sprung.results import Result
@@ -219,8 +220,7 @@ def test_the_modes_move(opened: Any) -> None:
     page = opened(1440, reduced_motion="no-preference")
     edges = "[...document.querySelectorAll('svg.car .edges')].map(one => one.getAttribute('d'))"
     before = page.evaluate(edges)
-    page.wait_for_timeout(250)
-    assert all(one != other for one, other in zip(before, page.evaluate(edges), strict=True))
+    page.wait_for_function(f"before => {edges}.every((edge, number) => edge !== before[number])", arg=before)
     page.get_by_role("button", name="Pause").click()
     still = page.evaluate(edges)
     page.wait_for_timeout(100)
@@ -235,8 +235,7 @@ def test_nothing_moves_for_who_does_not_want_it(opened: Any) -> None:
     page.wait_for_timeout(100)
     assert page.evaluate(edges) == before
     page.get_by_role("button", name="Play").click()
-    page.wait_for_timeout(250)
-    assert page.evaluate(edges) != before
+    page.wait_for_function(f"before => {edges} !== before", arg=before)
 
 
 def test_printed_it_is_whole_and_still(opened: Any, result: Result) -> None:
@@ -286,16 +285,11 @@ def test_a_fit_is_read_out_and_zoomed_by_keyboard(opened: Any, result: Result) -
     across = figure.locator(".across .tick")
     whole = across.all_text_contents()
     page.keyboard.press("+")
-    page.wait_for_timeout(100)
-    near_it = across.all_text_contents()
-    assert near_it != whole
+    wait_until(page, lambda: across.all_text_contents() != whole)
     page.keyboard.press("ArrowRight")
-    page.wait_for_timeout(100)
-    later, _ = said(figure)
-    assert later > at
+    wait_until(page, lambda: said(figure)[0] > at)
     page.keyboard.press("0")
-    page.wait_for_timeout(100)
-    assert across.all_text_contents() == whole
+    wait_until(page, lambda: across.all_text_contents() == whole)
     page.keyboard.press("Escape")
     figure.locator(".cursor").first.wait_for(state="detached")
 
