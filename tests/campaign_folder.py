@@ -48,13 +48,13 @@ def recording_text(names: str = "time,body_fl,body_fr,body_rl", samples: int = 1
 
 @pytest.fixture
 def text() -> Callable[..., str]:
-    """Give a recording of 100 samples at 500 Hz as text: body_fl 9 to 13, body_fr 9.5 to 11.5, body_rl -1.25, -2.25."""
+    """Return a recording of 100 samples at 500 Hz as text: body_fl 9 to 13, body_fr 9.5 to 11.5, body_rl -1.25, -2.25."""
     return recording_text
 
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Callable[..., Path]:
-    """Give a sound campaign folder in which some texts are replaced, pair by pair, and some recordings are others."""
+    """Return a sound campaign folder in which some texts are replaced, pair by pair, and some recordings are others."""
 
     def make(*replacements: tuple[str, str], **recordings: str | bytes) -> Path:
         content = CAMPAIGN
@@ -73,7 +73,7 @@ def folder(tmp_path: Path) -> Callable[..., Path]:
 
 @pytest.fixture
 def vehicle_file(tmp_path: Path) -> Callable[..., Path]:
-    """Give a sound vehicle file in which some texts are replaced, pair by pair."""
+    """Return a sound vehicle file in which some texts are replaced, pair by pair."""
 
     def make(*replacements: tuple[str, str]) -> Path:
         content = CAMPAIGN.replace("[known]\n", PARAMETERS)

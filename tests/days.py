@@ -99,7 +99,7 @@ def day(
 def anything(
     random: np.random.Generator, rate: float, on_wheels: NDArray[np.bool_], pause: tuple[float, float]
 ) -> Real:
-    """Give some seconds in which anything happens but a drop, as `disturbed` does."""
+    """Return some seconds in which anything happens but a drop, as `disturbed` does."""
     return disturbed(DISTURBANCES[int(random.integers(len(DISTURBANCES)))], random, rate, on_wheels, pause)
 
 
@@ -110,7 +110,7 @@ def disturbed(
     on_wheels: NDArray[np.bool_],
     pause: tuple[float, float],
 ) -> Real:
-    """Give some seconds of quiet with one disturbance in the middle, m/s², shape (channel, time)."""
+    """Return some seconds of quiet with one disturbance in the middle, m/s², shape (channel, time)."""
     samples = int(random.uniform(*pause) * rate)
     time = np.arange(samples) / rate
     channels = on_wheels.size

@@ -40,7 +40,7 @@ class System:
         return make_modes(poles, vectors[: len(self.M)])
 
     def decays(self, count: int, rate: float, seconds: float, seed: int = 0) -> list[Array]:
-        """Give accelerations from as many random states."""
+        """Return accelerations from as many random states."""
         A, n = self.state, len(self.M)
         states = np.random.default_rng(seed).standard_normal((count, 2 * n))
         left, vectors = np.linalg.eig(A)
@@ -66,5 +66,5 @@ SYSTEMS = {"complex": COMPLEX, "real": REAL, "repeated": REPEATED}
 
 
 def poles(modes: Sequence[Mode]) -> NDArray[np.complex128]:
-    """Give the poles of modes in an order of their own."""
+    """Return the poles of modes in an order of their own."""
     return np.sort_complex(np.array([mode.pole for mode in modes]))

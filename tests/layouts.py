@@ -19,7 +19,7 @@ WIDTHS = (40, 60, 80, 100, 120, 200)
 
 
 def tables_of(view: RenderableType) -> Iterator[Table]:
-    """Give every table of a view."""
+    """Return every table of a view."""
     if isinstance(view, TerminalTable):
         yield view.table
     elif isinstance(view, Group):
@@ -46,7 +46,7 @@ def check_view_is_whole(view: RenderableType, *, tables: int) -> None:
 
 
 def piped(view: RenderableType) -> str:
-    """Give what a view writes into a pipe."""
+    """Return what a view writes into a pipe."""
     with pytest.MonkeyPatch.context() as patch, contextlib.redirect_stdout(io.StringIO()):
         patch.delenv("COLUMNS", raising=False)
         patch.delenv("FORCE_COLOR", raising=False)

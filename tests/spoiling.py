@@ -26,7 +26,7 @@ class Spoiling(NamedTuple):
     end: float | None
 
     def of(self, content: bytes) -> bytes:
-        """Give what is left of a sound file."""
+        """Return what is left of a sound file."""
         spoilt = bytearray(content)
         for place, by in self.changes:
             start = int(place * len(content))
@@ -35,7 +35,7 @@ class Spoiling(NamedTuple):
 
 
 def spoilings(until: float = 1.0) -> st.SearchStrategy[Spoiling]:
-    """Give anything that may happen, nothing written over after some part of the file."""
+    """Return anything that may happen, nothing written over after some part of the file."""
     places = st.floats(0, until, exclude_max=True)
     changes = st.lists(st.tuples(places, st.binary(min_size=1, max_size=8)), max_size=4)
     return st.builds(Spoiling, changes, st.one_of(st.none(), st.floats(0, 1)))

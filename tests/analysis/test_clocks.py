@@ -20,7 +20,7 @@ LATE = 0.3e-3
 
 
 def off(found: Wireless, result: Result) -> tuple[list[float], list[float]]:
-    """Give what every clock misses the truth by, s, and its standard uncertainty."""
+    """Return the error of every clock, s, and its standard uncertainty."""
     channels = found.campaign.recordings[0].channels
     missed, stated = [], []
     for drop, ahead, report in zip(found.campaign.drops, found.ahead, result.drops, strict=True):

@@ -63,7 +63,7 @@ def with_a_loose_mass(mass: float, frequency: float, damping: float, play: float
 
 
 def _generator(M: Array, C: Array, K: Array, felt: Array, stop: float, play: float) -> Array:
-    """Give the generator for {X, Ẋ, s}, a stop of some stiffness, N/m, being met a way from rest, m, on the side s."""
+    """Return the generator for {X, Ẋ, s}, a stop of some stiffness, N/m, being met a way from rest, m, on the side s."""
     generator = np.zeros((17, 17))
     generator[:8, 8:16] = np.eye(8)
     driving = np.hstack([K + stop * np.outer(felt, felt), C, -stop * play * felt[:, None]])

@@ -13,7 +13,7 @@ from sprung.vehicle import TABLE_1_CAR, WHEELS
 
 
 def by_two_loggers(campaign: Campaign) -> Campaign:
-    """Give a campaign as if one logger had recorded the wheels and one the body."""
+    """Return a campaign as if one logger had recorded the wheels and one the body."""
     drops = []
     for drop in campaign.drops:
         one = drop.recording

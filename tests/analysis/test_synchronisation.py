@@ -34,7 +34,7 @@ def timed(simulated: Wireless, vehicle: Vehicle) -> list[tuple[FreeDecay, Real]]
 
 
 def missed(decay: FreeDecay, truth: Real, vehicle: Vehicle, sure: float) -> tuple[Real, Real]:
-    """Give what the clocks that are told well miss, but for what is common to all, and their uncertainties; s."""
+    """Return the errors of the well determined clocks, without what is common to all, and their uncertainties; s."""
     off = np.array([clock.expected_delay(vehicle.parameters) - clock.offset for clock in decay.clocks]) + truth
     std = np.array([clock.delay_std for clock in decay.clocks])
     well = std < sure

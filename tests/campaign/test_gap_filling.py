@@ -18,7 +18,7 @@ TIME = np.arange(1800) / RATE
 
 
 def vibration(time: Real) -> Real:
-    """Give a body and a wheel channel, m/s²: bounce at 1.3 Hz, hop at 11 Hz, from 0.5 s on."""
+    """Return a body and a wheel channel, m/s²: bounce at 1.3 Hz, hop at 11 Hz, from 0.5 s on."""
     since = np.maximum(time - 0.5, 0.0)
     body = np.exp(-2.0 * since) * np.sin(2 * np.pi * 1.3 * since)
     hop = np.exp(-12.0 * since) * np.sin(2 * np.pi * 11.0 * since)

@@ -18,7 +18,7 @@ EVEN: Real = np.linspace(0.0, (COUNT - 1) * STEP, COUNT, dtype=np.float64)
 
 
 def vibration(time: Real) -> Real:
-    """Give a body and a wheel channel, m/s²: bounce at 1.3 Hz, hop at 11 Hz, from 0.5 s on."""
+    """Return a body and a wheel channel, m/s²: bounce at 1.3 Hz, hop at 11 Hz, from 0.5 s on."""
     since = np.maximum(time - 0.5, 0.0)
     body = np.exp(-2.0 * since) * np.sin(2 * np.pi * 1.3 * since)
     hop = np.exp(-12.0 * since) * np.sin(2 * np.pi * 11.0 * since)
@@ -26,7 +26,7 @@ def vibration(time: Real) -> Real:
 
 
 def understood(stamps: Real, taken: Real, noise: float = 0.02) -> tuple[RegularTimeBase, Real]:
-    """Give what is made of samples, and what they are off, m/s² rms, beside their noise."""
+    """Return what is made of samples, and what they are off, m/s² rms, beside their noise."""
     values = vibration(taken) + noise * np.random.default_rng(1).standard_normal((2, taken.size))
     found = regularise_time_base(stamps, values, "sample {}".format, "a.csv")
     error = found.values - vibration(found.start + np.arange(found.values.shape[1]) / found.rate)

@@ -22,14 +22,14 @@ REST = 0.4  # s before the release, as `simulate` has it
 
 
 def changed(campaign: Campaign, change: dict[str, Any], drop: int = 0) -> Campaign:
-    """Say something else of a drop."""
+    """Change a statement about a drop."""
     drops = list(campaign.drops)
     drops[drop] = replace(drops[drop], **change)
     return replace(campaign, drops=tuple(drops))
 
 
 def spoilt(campaign: Campaign, values: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> Campaign:
-    """Give the first recording other values."""
+    """Replace the values of the first recording."""
     return campaign.with_recordings((replace(campaign.recordings[0], values=values), *campaign.recordings[1:]))
 
 

@@ -31,7 +31,7 @@ WEIGHTS = np.full(8, 0.02**-2)
 
 
 def clocks(late: float = 0.0, std: float = 0.05, follows: float = 0.0) -> tuple[LoggerClock, ...]:
-    """Give three loggers: the body's sensors, two wheels and two wheels; the second one late."""
+    """Return three loggers: the body's sensors, two wheels and two wheels; the second one late."""
     groups = ((0, 1, 2, 3), (4, 5), (6, 7))
     return tuple(
         LoggerClock(
@@ -65,7 +65,7 @@ ONTO = np.array([[own.startswith(name) for own in APART] for name in NAMES], dty
 
 
 def flown(those: list[FreeDecay], at: Real) -> list[FreeDecay]:
-    """Give the first two decays flights that tell of three things, each to some parts in a thousand, and tell them wrong."""
+    """Add flights to the first two decays that determine three quantities to some parts in a thousand, and wrongly."""
     random = np.random.default_rng(5)
     for i in (0, 1):
         told = random.standard_normal((17, 3)) / (0.003 * (at @ ONTO)[:, None])

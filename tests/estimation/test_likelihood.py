@@ -47,7 +47,7 @@ def likelihood_of(vehicle: Vehicle, noise: float = 0.1) -> tuple[ClosedFormObjec
 
 
 def basis(likelihood: ClosedFormObjective, values: Real, load: str, samples: int, rate: float = 200) -> Real:
-    """Give every column that a free initial state and the offsets can make, channel after channel, from matrix exponentials."""
+    """Return every column of a free initial state and the offsets, channel after channel, from matrix exponentials."""
     matrices = likelihood.models[load].matrices(values)
     sensors = likelihood.sensors.at(values)
     columns = []

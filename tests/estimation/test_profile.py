@@ -51,7 +51,7 @@ def fitted(campaign: Campaign) -> tuple[FitResult, FitStatistics, dict[str, Know
 
 
 def both(campaign: Campaign, name: str) -> tuple[Estimate, Estimate]:
-    """Give an estimate with its interval from the curvature, and from the profile."""
+    """Return an estimate with its interval from the curvature, and from the profile."""
     optimum, fit, known = fitted(campaign)
     estimate = estimate_of(fit, known, name)
     return estimate, profiled(optimum, fit, name, estimate)

@@ -167,7 +167,7 @@ def said(result: sprung.Result) -> list[tuple[str, str]]:
 
 
 def distance(result: sprung.Result) -> float:
-    """Give how far the worst parameter is from that of the sound campaign, in that one's standard uncertainties."""
+    """Return how far the worst parameter is from that of the sound campaign, in that one's standard uncertainties."""
     away = []
     for name, one in sound().parameters.items():
         other = result.parameters[name].value

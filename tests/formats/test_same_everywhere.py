@@ -61,7 +61,7 @@ def written(campaign: sprung.Campaign, folder: Path, way: ModelSearch) -> Path:
 
 
 def off_by(read: sprung.Campaign, campaign: sprung.Campaign) -> float:
-    """Give how far the samples are off at most, m/s²."""
+    """Return the largest error of the samples, m/s²."""
     pairs = zip(read.recordings, campaign.recordings, strict=True)
     return max(float(np.abs(one.values - other.values).max()) for one, other in pairs)
 

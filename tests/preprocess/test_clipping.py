@@ -18,7 +18,7 @@ RANGED = tuple(replace(sensor, range=5.0) for sensor in CLEAN.sensors)
 
 
 def at_full_scale() -> Recording:
-    """Give a recording of which single samples are at full scale, which no plateau would show."""
+    """Return a recording of which single samples are at full scale, which no plateau would show."""
     one = CLEAN.recordings[0]
     return replace(one, values=np.clip(one.values, -FULL, FULL))
 

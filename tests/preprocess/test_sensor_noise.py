@@ -22,14 +22,14 @@ COUNT, RESTED = 1600, 150
 
 
 def process(shape: tuple[int, ...], rho: float, random: np.random.Generator) -> Real:
-    """Give a first-order process of variance 1 whose neighbours are correlated by rho."""
+    """Return a first-order process of variance 1 whose neighbours are correlated by rho."""
     driven = random.standard_normal((*shape[:-1], shape[-1] + 200))
     whole = np.asarray(lfilter([np.sqrt(1 - rho**2)], [1, -rho], driven, axis=-1), dtype=np.float64)
     return whole[..., 200:]
 
 
 def rested(like: FreeDecay, noise: Real) -> FreeDecay:
-    """Give a decay whose rest shows this, less level and creep, as a release reads it."""
+    """Return a decay whose rest shows this, less level and creep, as a release reads it."""
     time = np.arange(noise.shape[1]) - (noise.shape[1] - 1) / 2
     level, creep = noise.mean(axis=1, keepdims=True), noise @ time / (time @ time)
     return replace(like, rest=like.rest._replace(noise=noise - level - creep[:, None] * time))

@@ -137,7 +137,7 @@ def test_a_drop_without_anything_observed() -> None:
 
 
 def channels(used: bool, *peaks: float | None, **faults: tuple[str, ...]) -> tuple[ChannelReport, ...]:
-    """Give three channels, without a peak of those that are left out."""
+    """Return three channels, without a peak of those that are left out."""
     names: tuple[tuple[str, Literal["body", "fl", "rr"]], ...] = (
         ("body", "body"),
         ("wheel_fl", "fl"),

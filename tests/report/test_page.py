@@ -205,7 +205,7 @@ TEXTS_AND_GROUNDS = """() => {
 
 
 def contrast(one: str, other: str) -> float:
-    """Give the contrast ratio of two colours (WCAG 2.2, 1.4.3)."""
+    """Return the contrast ratio of two colours (WCAG 2.2, 1.4.3)."""
 
     def luminance(colour: str) -> float:
         parts = np.array([int(part) for part in re.findall(r"\d+", colour)[:3]]) / 255
@@ -392,7 +392,7 @@ def test_on_paper_no_page_is_a_third_empty(result: Result) -> None:
 
 
 def text_of_margins(page: Any) -> Iterator[str]:
-    """Give the words beside the text of a page: running head and page number."""
+    """Return the words beside the text of a page: running head and page number."""
     for box in page.children:
         if type(box).__name__ == "MarginBox":
             yield "".join(one.text for one in box.descendants() if hasattr(one, "text"))

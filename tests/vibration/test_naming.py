@@ -120,7 +120,7 @@ def test_front_and_rear_exchanged_exchanges_the_axles(vehicle: Vehicle) -> None:
 
 
 def levers(vehicle: Vehicle) -> tuple[float, float]:
-    """Give those by which `compute_modes` compares angles with displacements."""
+    """Return the lengths by which `compute_modes` compares angles with displacements."""
     return float(np.sqrt(vehicle.I_yy / vehicle.m_s)), float(np.sqrt(vehicle.I_xx / vehicle.m_s))
 
 
