@@ -10,9 +10,12 @@ PYTHONS = ["3.11", "3.12", "3.13"]
 
 @nox.session(python=PYTHONS)
 def tests(session: nox.Session) -> None:
-    """Run the tests."""
+    """Run the tests, then those of which each takes seconds."""
     session.install(".[dev,all]")
     session.run("pytest", *session.posargs)
+    session.run(
+        "pytest", "-m", "slow and not long", *session.posargs, success_codes=[0, 5]
+    )  # 5: none among those named
 
 
 @nox.session
@@ -45,14 +48,14 @@ def rounding(session: nox.Session, kernel: str, threads: str) -> None:
     session.install(".[dev,all]")
     environment = {"OPENBLAS_CORETYPE": kernel, "OPENBLAS_NUM_THREADS": threads}
     compared = ("tests/report", "tests/test_examples.py", "tests/docs", "tests/modal", "tests/estimation")
-    session.run("pytest", *(session.posargs or compared), env=environment)
+    session.run("pytest", "-m", "not long", *(session.posargs or compared), env=environment)
 
 
 @nox.session
 def coverage(session: nox.Session) -> None:
-    """Run the tests and show which branches they miss."""
+    """Run the tests, also the slower ones, and show which branches they miss."""
     session.install("-e", ".[dev,all]")
-    session.run("pytest", "--cov", "--cov-report=term-missing:skip-covered", *session.posargs)
+    session.run("pytest", "-m", "not long", "--cov", "--cov-report=term-missing:skip-covered", *session.posargs)
 
 
 @nox.session

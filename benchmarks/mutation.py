@@ -113,7 +113,20 @@ def is_caught(mutant: Mutant) -> bool:
         shutil.copytree(PACKAGE, copy, ignore=shutil.ignore_patterns("__pycache__"))
         (copy / mutant.path.relative_to(PACKAGE)).write_text(mutant.text, encoding="utf-8")
         tests = [f"tests/{room}" for room in sorted(ROOMS, key=lambda room: room != own)]
-        command = [sys.executable, "-m", "pytest", "-x", "-q", "-n", "0", "-p", "no:cacheprovider", *tests]
+        command = [
+            sys.executable,
+            "-m",
+            "pytest",
+            "-x",
+            "-q",
+            "-n",
+            "0",
+            "-m",
+            "not long",
+            "-p",
+            "no:cacheprovider",
+            *tests,
+        ]
         environment = os.environ | {"PYTHONPATH": folder, "PYTHONDONTWRITEBYTECODE": "1"}
         try:
             done = subprocess.run(  # noqa: S603 (pytest, with files of this project)

@@ -22,6 +22,7 @@ sprung.identify
 """
 
 
+@pytest.mark.slow
 def test_nothing_else_needs_pandas() -> None:
     done = subprocess.run(  # noqa: S603 (our own code)
         [sys.executable, "-c", WITHOUT],

@@ -14,6 +14,7 @@ from documents import blocks_of, indented_code, run_page
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGES = ("README.md", *sorted(f"docs/{path.name}" for path in (ROOT / "docs").glob("*.md")))
+SLOW = {"docs/exports.md", "docs/fleets.md", "docs/tutorial.md"}
 MODULES = ["sprung", *(module.name for module in pkgutil.walk_packages(sprung.__path__, "sprung."))]
 
 
@@ -34,7 +35,9 @@ def test_there_are_examples() -> None:
         assert examples_of(name)
 
 
-@pytest.mark.parametrize("page", PAGES)
+@pytest.mark.parametrize(
+    "page", [pytest.param(page, marks=pytest.mark.slow) if page in SLOW else page for page in PAGES]
+)
 def test_pages(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Every block of a page runs, in order, in an empty folder; what is shown below it is what it prints."""
     text = (ROOT / page).read_text(encoding="utf-8")

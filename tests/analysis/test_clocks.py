@@ -40,6 +40,7 @@ def off(found: Wireless, result: Result) -> tuple[list[float], list[float]]:
         pytest.param((200.0, 400.0, 500.0, 512.0, 1000.0, 800.0, 600.0, 500.0), id="many rates"),
     ],
 )
+@pytest.mark.slow
 def test_eight_loggers_give_the_vehicle_and_their_clocks(rates: tuple[float, ...]) -> None:
     simulated = wireless(rates=rates, seed=2)
     result = sprung.identify(simulated.campaign)
@@ -85,6 +86,7 @@ def test_a_flight_that_no_vehicle_has_tells_nothing_of_it() -> None:
     assert np.median(np.sqrt(np.diag(plain.uncertainty.covariance)) / std) < 0.95
 
 
+@pytest.mark.slow
 def test_files_of_eight_loggers_are_read_back(tmp_path: Path) -> None:
     simulated = wireless(seed=3).campaign
     read = sprung.read(sprung.write(simulated, tmp_path))

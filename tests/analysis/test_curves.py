@@ -68,6 +68,7 @@ def test_the_range_is_that_of_the_decays(result: Result) -> None:
     assert 0.25 * rates.max() < high < 1.02 * rates.max()
 
 
+@pytest.mark.slow
 def test_curves_are_saved_and_come_back(result: Result, tmp_path: Path) -> None:
     document = json.loads((result.save(tmp_path) / "results.json").read_text(encoding="utf-8"))
     own = document["curves"]["damper_front"]
@@ -78,6 +79,7 @@ def test_curves_are_saved_and_come_back(result: Result, tmp_path: Path) -> None:
     assert report_html(sprung.load(tmp_path)) == report_html(result)
 
 
+@pytest.mark.slow
 def test_the_report_has_the_curves(result: Result) -> None:
     html = report_html(result)
     assert "Force curves" in html

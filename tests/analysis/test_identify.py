@@ -167,6 +167,7 @@ def test_what_is_known_exactly_stays_and_makes_the_rest_known() -> None:
         assert abs(one.value - SCHOOL_BUS.parameters[name]) < 4 * one.std
 
 
+@pytest.mark.slow
 def test_knowledge_that_contradicts_the_recordings_is_doubted() -> None:
     load = {"name": "bags", "items": [{"mass": 150, "position": (-1.0, 0.2, 0.5)}]}
     wrong = {"total_mass": KnownValue(1.1 * TABLE_1_CAR.total_mass, 2.0)}

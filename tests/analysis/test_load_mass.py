@@ -123,6 +123,7 @@ def test_as_a_parameter_it_gives_the_same_matrices() -> None:
         assert pytest.approx(as_number.M, rel=1e-12) == known.matrices(values[:-1]).M
 
 
+@pytest.mark.slow
 def test_a_plan_counts_the_uncertainty_of_a_planned_load() -> None:
     """Beside no scales the relative variances add, as in a fit: error² = error₀² + (std / mass)² for what scales."""
     std = 3.0

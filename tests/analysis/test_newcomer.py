@@ -240,6 +240,7 @@ ONE_CAUSE: dict[str, tuple[Callable[[Campaign], Campaign], str, str, str, str]] 
 
 
 @pytest.mark.parametrize(("spoil", "code", "where", "what", "do"), ONE_CAUSE.values(), ids=ONE_CAUSE)
+@pytest.mark.slow
 def test_one_mistake_with_all_sensors_or_drops_is_one_fault(
     recorded: Campaign, spoil: Callable[[Campaign], Campaign], code: str, where: str, what: str, do: str
 ) -> None:

@@ -35,6 +35,7 @@ def test_the_engine_and_we_agree_on_a_pass(engine: Any) -> None:
 
 
 @pytest.mark.parametrize("known", [(), ("front_axle_mass",)], ids=["nothing weighed", "an axle weighed"])
+@pytest.mark.slow
 def test_passes_of_its_car_determine_every_parameter(known: tuple[str, ...], engine: Any) -> None:
     """Four passes each on both sides, left and right: masses and rates as ratios, and all with one axle weighed, to 1 %."""
     car = engine.CAR

@@ -32,6 +32,7 @@ def errors_of(result: Result, vehicle: Vehicle) -> dict[str, float]:
 
 
 @pytest.mark.parametrize("vehicle", [TABLE_1_CAR, PITCH_PLANE, QUARTER_CAR], ids=lambda one: one.name)
+@pytest.mark.slow
 def test_identify_inverts_simulate_and_nothing_is_weighed(vehicle: Vehicle) -> None:
     campaign = sprung.simulate(vehicle, drops=[PADS], noise=0, pads=SHORT)
     result = sprung.identify(campaign, extras=(), tracks="shared")
@@ -40,6 +41,7 @@ def test_identify_inverts_simulate_and_nothing_is_weighed(vehicle: Vehicle) -> N
     assert result.scale.known
 
 
+@pytest.mark.slow
 def test_half_a_minute_on_pads_determines_every_parameter_to_half_a_percent() -> None:
     campaign = sprung.simulate(TABLE_1_CAR, drops=[PADS], noise=NOISE, seed=1)
     result = sprung.identify(campaign)
@@ -66,6 +68,7 @@ def test_pads_and_drops_of_one_vehicle_are_identified_together() -> None:
     assert all(0.5 < drop.residual < 1.2 for drop in result.validation.values())
 
 
+@pytest.mark.slow
 def test_a_damper_mount_is_found_on_pads() -> None:
     vehicle = TABLE_1_CAR.with_values(k_df=2.1e5, k_dr=2.6e5)
     campaign = sprung.simulate(vehicle, drops=[PADS], noise=NOISE, seed=1, pads=PadMotion(duration=20.0))

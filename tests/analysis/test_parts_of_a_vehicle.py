@@ -49,6 +49,7 @@ def test_nonlinear_terms_are_those_of_a_whole_vehicle(vehicle: Vehicle) -> None:
 
 
 @PART
+@pytest.mark.slow
 def test_recordings_alone_show_no_more_than_there_is(vehicle: Vehicle) -> None:
     result = sprung.identify(simulated(vehicle, 0.02))
     assert result.verdict.state == "accept"

@@ -99,6 +99,7 @@ def coloured(channel: str) -> Campaign:
     return clean.with_recordings(recordings)
 
 
+@pytest.mark.slow
 def test_the_result_says_what_enlarged_the_error_bars() -> None:
     white = sprung.identify(campaign()).fit
     assert (white.inflation, white.inflated_by, white.most_coloured) == (1.0, "nothing", None)

@@ -50,6 +50,7 @@ def test_without_noise_identification_returns_what_was_simulated(
 
 @pytest.mark.parametrize("noise", [0.02, pytest.param(0.1, marks=pytest.mark.long)])
 @pytest.mark.parametrize(("excitation", "push", "bump"), CASES)
+@pytest.mark.slow
 def test_the_fitted_vehicle_shows_when_its_motion_becomes_free(
     excitation: str, push: str, bump: str, noise: float
 ) -> None:
@@ -64,6 +65,7 @@ def test_the_fitted_vehicle_shows_when_its_motion_becomes_free(
 
 
 @pytest.mark.parametrize(("excitation", "push", "bump"), CASES)
+@pytest.mark.slow
 def test_recordings_alone_show_no_more_than_there_is(excitation: str, push: str, bump: str) -> None:
     result = sprung.identify(simulated(TABLE_1_CAR, excitation, push, bump, 0.02))
     assert result.verdict.state == "accept"
@@ -74,6 +76,7 @@ def test_recordings_alone_show_no_more_than_there_is(excitation: str, push: str,
     assert np.all(np.abs(off) < 4 * np.array(stds))
 
 
+@pytest.mark.slow
 def test_a_campaign_may_mix_drops_pushes_and_passes() -> None:
     drops: list[dict[str, object]] = [
         {"excitation": "push"},
@@ -90,6 +93,7 @@ def test_a_campaign_may_mix_drops_pushes_and_passes() -> None:
             assert result.parameters[name].value == pytest.approx(value, rel=tolerance), name
 
 
+@pytest.mark.slow
 def test_a_push_by_hand_tells_the_body_and_the_wheels_hardly() -> None:
     """Fifteen pushes, both axles weighed, 1 mg of noise: the body to 2 %, the wheels less, and that is said."""
     car = TABLE_1_CAR
@@ -130,6 +134,7 @@ def test_dry_friction_is_found_behind_a_bump() -> None:
         assert abs(found.value - value) < 4 * (found.std or 0.0)
 
 
+@pytest.mark.slow
 def test_damper_mounts_are_found_behind_a_bump() -> None:
     car = TABLE_1_CAR.with_values(k_df=2.4e5, k_dr=2.6e5)
     result = sprung.identify(simulated(car, "pass", "hand", "half-sine", 0.02, seed=5))

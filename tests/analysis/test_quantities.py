@@ -53,6 +53,7 @@ def test_forces_with_steps_read_any_quantity() -> None:
 
 
 @ANY
+@pytest.mark.slow
 def test_noise_leaves_what_there_is(name: str) -> None:
     """Errors over the Cramér-Rao bound of one campaign; the model is selected."""
     case = case_of(name)
@@ -63,6 +64,7 @@ def test_noise_leaves_what_there_is(name: str) -> None:
     assert result.fit.model == case.vehicle.extras
 
 
+@pytest.mark.slow
 def test_a_campaign_survives_being_written_and_its_report_names_units(tmp_path: Path) -> None:
     sensors = (
         *default_sensors(CAR),
@@ -95,6 +97,7 @@ def test_a_campaign_survives_being_written_and_its_report_names_units(tmp_path: 
         (('relative_to *= "fl"', ""), ("no position",)),
     ],
 )
+@pytest.mark.slow
 def test_what_is_missing_is_named(change: tuple[str, str], words: tuple[str, ...], tmp_path: Path) -> None:
     sensors = (
         *default_sensors(CAR),
@@ -121,6 +124,7 @@ def test_wheels_that_stand_lower_in_the_end_have_been_dropped() -> None:
     assert "fl, fr, rl, rr to have fallen" in found.faults[0].what
 
 
+@pytest.mark.slow
 def test_a_displacement_in_another_unit_is_found() -> None:
     _, sensors = TESTS["eight accelerometers, suspension travel"]
     campaign = simulated(CAR, sensors, 0.02)
@@ -132,6 +136,7 @@ def test_a_displacement_in_another_unit_is_found() -> None:
     assert "in mm" in result.faults[0].what
 
 
+@pytest.mark.slow
 def test_a_plan_tells_what_further_sensors_are_worth() -> None:
     plan = sprung.plan(CAR, loads=[{"name": "bag", "added": {"mass": 140.0}}])
     bounds = {row.label: row.bound for row in plan.rows}

@@ -6,6 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 import sprung
 from sprung.campaign import Campaign, Recording, merge_loggers
@@ -36,6 +37,7 @@ def by_two_loggers(campaign: Campaign) -> Campaign:
     return replace(campaign, drops=tuple(drops))
 
 
+@pytest.mark.slow
 def test_repeats_by_several_loggers_each_have_their_series(tmp_path: Path) -> None:
     twice = [{"wheels": wheels, "height": 0.05} for wheels in (WHEELS, WHEELS, ("fl", "fr"), ("fl", "rl"))]
     simulated = sprung.simulate(TABLE_1_CAR, drops=twice, rate=200, noise=0.02, seed=3, known={"total_mass": 1551.8})

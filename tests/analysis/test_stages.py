@@ -102,6 +102,7 @@ def test_requested_terms_are_fitted_and_no_others_tried(campaign: sprung.Campaig
     assert not [step for step in run.trace if step.stage.startswith("select") and "scored" in step.what]
 
 
+@pytest.mark.slow
 def test_a_nonlinear_term_that_is_nothing_at_the_optimum_is_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
     """The search ends a standard error away from the optimum, and does not know where the wheels last touched."""
     rubbing = TABLE_1_CAR.with_values(F_f=90.0, F_r=70.0, s_f=2.5e5, s_r=2.5e5)

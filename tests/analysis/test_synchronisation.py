@@ -44,6 +44,7 @@ def missed(decay: FreeDecay, truth: Real, vehicle: Vehicle, sure: float) -> tupl
 @pytest.mark.parametrize(
     "rates", [pytest.param((500.0,) * 8, marks=pytest.mark.long), MANY_RATES], ids=["one rate", "many rates"]
 )
+@pytest.mark.slow
 def test_the_release_tells_the_clocks_as_well_as_it_says(rates: tuple[float, ...]) -> None:
     off: list[float] = []
     std: list[float] = []

@@ -61,6 +61,7 @@ def saved(page: Any, file: Path) -> dict[str, Any]:
     return tomllib.loads(file.read_text())
 
 
+@pytest.mark.slow
 def test_a_sensor_is_moved_with_the_mouse_and_with_keys(user: Tabs, file: Path) -> None:
     page = user.open(PAGE)
     assert position(page) == [0.1, 0.58, 0.5]
@@ -90,6 +91,7 @@ def test_a_sensor_is_moved_with_the_mouse_and_with_keys(user: Tabs, file: Path) 
     assert document["sensor"][4]["on"] == "fr"
 
 
+@pytest.mark.slow
 def test_the_limits_of_a_recording_are_moved(user: Tabs, file: Path) -> None:
     page = user.open(PAGE)
     drop = page.locator("[data-drop='0']")
@@ -129,6 +131,7 @@ def test_two_tabs_do_not_overwrite_each_other(user: Tabs, file: Path) -> None:
     user.complaints.remove("error: Failed to load resource: the server responded with a status of 409 (Conflict)")
 
 
+@pytest.mark.slow
 def test_the_text_is_checked_while_it_is_typed(user: Tabs, file: Path) -> None:
     page = user.open(f"{PAGE}&as=text")
     text = page.input_value("#text")
@@ -147,6 +150,7 @@ def test_the_text_is_checked_while_it_is_typed(user: Tabs, file: Path) -> None:
     assert file.read_text() == text  # nothing was saved
 
 
+@pytest.mark.slow
 def test_what_is_added_has_the_focus(user: Tabs) -> None:
     page = user.open(PAGE)
     page.get_by_role("button", name="Add a sensor").click()
@@ -159,6 +163,7 @@ def test_what_is_added_has_the_focus(user: Tabs) -> None:
     page.locator("[data-gap='known.k_sf']").wait_for()
 
 
+@pytest.mark.slow
 def test_every_input_has_a_name_and_nothing_is_wider_than_the_page(browser: Any, server: Served) -> None:
     with tabs(browser, server, color_scheme="dark") as user:
         for path in (

@@ -72,6 +72,7 @@ def test_names_are_no_markup(folder: Path) -> None:
     assert "&lt;script&gt;alert(1)&lt;/script&gt;" in page
 
 
+@pytest.mark.slow
 def test_three_hundred_recordings_are_seen_at_once(tmp_path: Path) -> None:
     """300 recordings of 8 channels, and a campaign of all of them; benchmarks/local_page.py measures how soon."""
     first = write_recordings(tmp_path / "first", ("empty",))[0].read_bytes()
@@ -89,6 +90,7 @@ def test_three_hundred_recordings_are_seen_at_once(tmp_path: Path) -> None:
         assert campaign.text.count('class="entry-group drop"') == 300
 
 
+@pytest.mark.slow
 def test_a_draft_is_a_job_that_writes_the_campaign(tmp_path: Path) -> None:
     write_recordings(tmp_path / "measured <1>" if os.name != "nt" else tmp_path / "measured 1", ("empty",))
     (inside,) = tmp_path.iterdir()

@@ -99,6 +99,7 @@ def check(page: Any) -> None:
     assert page.title() != "1"
 
 
+@pytest.mark.slow
 def test_names_and_texts_of_files_are_text(user: Any, server: Served) -> None:
     campaign = quote(f"{FOLDER}/campaign.toml")
     first = opened(user, server, "/")

@@ -58,6 +58,7 @@ def head(server: Served, path: str, method: str = "GET", more: str = "") -> byte
         *(pytest.param(path, marks=pytest.mark.long) for path in ("/jobs", "/files/drop_7.csv", "/files/large.html")),
     ],
 )
+@pytest.mark.slow
 def test_a_thousand_requests_at_once_are_all_answered(server: Served, path: str) -> None:
     with opened(server, MANY) as connections:
         for connection in connections:
@@ -135,6 +136,7 @@ def test_a_client_that_stops_is_disconnected(server: Served) -> None:
     assert not list(server.folder.glob("*slow*"))
 
 
+@pytest.mark.slow
 def test_many_large_forms_at_once_are_read_one_after_the_other(server: Served) -> None:
     """400 MB of forms, which are read into memory, and several times as much with their fields."""
     body = b"a=" + b"x" * (LARGEST_BODY - 2)

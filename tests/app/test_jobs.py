@@ -47,6 +47,7 @@ def test_a_job_does_what_the_command_does(jobs: Jobs, tmp_path: Path) -> None:
     assert job.document()["elapsed"] > 0
 
 
+@pytest.mark.slow
 def test_a_job_that_fails_says_what_the_command_says(jobs: Jobs, tmp_path: Path) -> None:
     job = ended(jobs, jobs.start(("check", "nothing"), tmp_path, "Check"))
     assert (job.state, job.status, job.output) == ("failed", 2, "")
@@ -54,6 +55,7 @@ def test_a_job_that_fails_says_what_the_command_says(jobs: Jobs, tmp_path: Path)
     assert "progress" not in job.messages
 
 
+@pytest.mark.slow
 def test_a_module_in_the_folder_of_recordings_is_not_imported(jobs: Jobs, tmp_path: Path) -> None:
     """With ``python -m`` alone the working folder is the first place where modules are looked for."""
     for name in ("numpy", "json", "sprung", "sitecustomize"):
@@ -113,6 +115,7 @@ def test_closing_ends_everything(tmp_path: Path) -> None:
         jobs.start(("check", "car"), tmp_path, "")
 
 
+@pytest.mark.slow
 def test_a_process_has_a_limit_of_memory(tmp_path: Path) -> None:
     """A WAV file of 3 GB, of holes only, of which half of the samples would be 6 GB of numbers."""
     size, path = 3_000_000_000, tmp_path / "x.wav"
@@ -127,6 +130,7 @@ def test_a_process_has_a_limit_of_memory(tmp_path: Path) -> None:
     assert "x.wav: found content for which the memory is not sufficient" in job.messages
 
 
+@pytest.mark.slow
 def test_a_zip_bomb_is_refused_in_little_memory(jobs: Jobs, tmp_path: Path) -> None:
     write_zip_bomb(tmp_path / "x.xlsx", 300)
     job = jobs.start(("check", ".", "--no-page"), tmp_path, "Check")
@@ -158,6 +162,7 @@ def states(jobs: Jobs, last: int, wanted: str | None, most: int) -> list[tuple[i
     return asyncio.run(asyncio.wait_for(follow(), 60))
 
 
+@pytest.mark.slow
 def test_a_stream_has_every_state_and_goes_on_after_an_interruption(jobs: Jobs, tmp_path: Path) -> None:
     copy_sedan(tmp_path / "car")
     job = jobs.start(("check", "car"), tmp_path, "Check")

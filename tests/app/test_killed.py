@@ -55,6 +55,7 @@ def state_at_the_end(server: Served, job: str) -> str:
 @pytest.mark.parametrize(
     "after", [0.3, 1.5, pytest.param(2.5, marks=pytest.mark.long), pytest.param(4, marks=pytest.mark.long)]
 )
+@pytest.mark.slow
 def test_a_killed_server_takes_its_jobs_with_it_and_the_next_one_goes_on(folder: Path, after: float) -> None:
     before = {path.name: path.read_bytes() for path in (folder / "car").iterdir()}
     process = start(folder)
@@ -91,6 +92,7 @@ def test_a_killed_worker_is_reported_and_the_job_can_be_started_again(folder: Pa
         wait_for(lambda: server.ask(f"/jobs/{again}").json["state"] == "running")
 
 
+@pytest.mark.slow
 def test_a_text_is_whole_whenever_its_writer_is_killed(tmp_path: Path) -> None:
     wait = random.Random(3)  # noqa: S311 (moments)
     for _ in range(10):

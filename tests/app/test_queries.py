@@ -32,6 +32,7 @@ def ask(queries: Queries, question: str, **arguments: object) -> object:
     return asyncio.run(queries.ask("form", question, **arguments))
 
 
+@pytest.mark.slow
 def test_a_form_is_answered_and_errors_come_back(queries: Queries, tmp_path: Path) -> None:
     path = str(tmp_path / "campaign.toml")
     found = ask(queries, "form_view:form_view", path=path, text=TEXT, entered={"vehicle.wheelbase.value": ["2,6"]})
@@ -48,6 +49,7 @@ def test_a_form_is_answered_and_errors_come_back(queries: Queries, tmp_path: Pat
         ask(queries, "form_view:form_view", path=path)
 
 
+@pytest.mark.slow
 def test_a_process_that_was_killed_is_started_again(queries: Queries) -> None:
     lane = queries._lanes["form"]
     ask(queries, "form_view:ready")

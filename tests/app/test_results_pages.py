@@ -204,6 +204,7 @@ def test_ride_numbers_have_the_options_of_the_command(user: Tabs) -> None:
     assert page.get_by_label("Seats").input_value().splitlines() == ["-1,4 0,4", "-1.4,-0.4"]
 
 
+@pytest.mark.slow
 def test_the_motion_turns_stops_and_is_saved_on_white(user: Tabs, tmp_path: Path) -> None:
     page = user.open(PAGES[6])
     page.locator("#frame[data-ready]").wait_for()

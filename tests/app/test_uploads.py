@@ -135,6 +135,7 @@ def test_what_a_killed_server_left_is_removed_by_the_next(tmp_path: Path) -> Non
         assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.slow
 def test_a_recording_of_500_mb_goes_to_the_disk_and_not_into_memory(server: Served, tmp_path: Path) -> None:
     large = tmp_path / "large.csv"
     with large.open("wb") as file:

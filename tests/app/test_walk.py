@@ -41,6 +41,7 @@ def user(browser: Any, server: Served) -> Iterator[Tabs]:
         yield opened
 
 
+@pytest.mark.slow
 def test_ten_recordings_become_an_accepted_report(user: Tabs, server: Served, recordings: list[Path]) -> None:
     begun = time.monotonic()
     page = user.open()

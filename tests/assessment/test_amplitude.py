@@ -70,6 +70,7 @@ def fall(trace: AmplitudeCurve) -> float:
     return float(trace.frequency[trace.amplitude.argmin()] / trace.frequency[trace.amplitude.argmax()])
 
 
+@pytest.mark.slow
 def test_of_a_linear_car_everything_is_flat() -> None:
     found = sprung.validate(sprung.read(DATA / "sedan"), extras=())
     assert [one.mode for one in found.amplitudes] == ["body bounce", "body pitch", "body roll"]

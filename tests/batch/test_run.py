@@ -174,6 +174,7 @@ def test_an_interrupted_batch_keeps_what_is_finished(tmp_path: Path) -> None:
     assert do(tmp_path, batch_work.square, tasks(1000), 1000).computed == 1000 - kept
 
 
+@pytest.mark.slow
 def test_a_full_disk_is_said_and_loses_nothing(tmp_path: Path) -> None:
     """A process that may write no file much larger than the present one: the error of the system is a real one."""
     do(tmp_path, batch_work.square, tasks(30), 30)

@@ -5,6 +5,8 @@ from __future__ import annotations
 import ast
 from pathlib import Path
 
+import pytest
+
 from mutation import draw_mutants, mutants_of
 
 
@@ -30,6 +32,7 @@ def test_text_and_sequences_are_no_formulas(tmp_path: Path) -> None:
     assert list(mutants_of(path)) == []
 
 
+@pytest.mark.slow
 def test_drawn_mutants_differ_and_can_be_read() -> None:
     drawn = draw_mutants(50, seed=0)
     assert len({(mutant.path, mutant.begin, mutant.replacement) for mutant in drawn}) == 50

@@ -42,6 +42,7 @@ def test_the_name_is_written_and_read_back(folder: Folder, tmp_path: Path) -> No
     assert 'name   = "bounce, 2nd try"' in (tmp_path / "again" / "campaign.toml").read_text(encoding="utf-8")
 
 
+@pytest.mark.slow
 def test_a_drop_with_a_name_is_fitted_like_any_other(folder: Folder) -> None:
     named = sprung.read(folder.path)
     plain = replace(

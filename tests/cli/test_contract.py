@@ -319,6 +319,7 @@ def test_paper(monkeypatch: pytest.MonkeyPatch) -> None:
     assert all(misprint["where"] in " ".join(text.out.split()) for misprint in said.json["misprints"])
 
 
+@pytest.mark.slow
 def test_the_same_campaign_gives_the_same_document(folder: Folder) -> None:
     quick = ("identify", folder.path, "--json", "--no-report")
     assert run(*quick).out == run(*quick).out

@@ -54,6 +54,7 @@ def test_the_document(vehicle_file: Path) -> None:
     assert max(step["percent"].values()) <= 0.15
 
 
+@pytest.mark.slow
 def test_a_campaign(folder: Folder) -> None:
     before = folder.listing()
     said = run("plan", folder.path)

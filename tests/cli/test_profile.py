@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import pytest
+
 from command_line import Folder, run
 
 
+@pytest.mark.slow
 def test_intervals_are_shown_where_they_are_asked_for(folder: Folder) -> None:
     plain = run("identify", folder.path, "--no-report")
     said = run("identify", folder.path, "--profile", "c_sf", "--profile", "total_mass", "--no-report")

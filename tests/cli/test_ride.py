@@ -20,6 +20,7 @@ def test_tables_of_a_result() -> None:
 
 
 @pytest.mark.parametrize("columns", [40, 80, 200])
+@pytest.mark.slow
 def test_no_width_cuts_a_number(columns: int) -> None:
     wide, narrow = (run("ride", RESULTS / "accept.json", "--road", "C", columns=one) for one in (400, columns))
     assert {word for word in wide.out.split() if "." in word and word[0].isdigit()} <= set(narrow.out.split())

@@ -80,6 +80,7 @@ def one_drop_folder(tmp_path: Path) -> Folder:
     return copy_sedan(tmp_path / "campaign", DROPS[:1])
 
 
+@pytest.mark.slow
 def test_a_decoration_that_fails_is_named_and_costs_nothing_else(
     one_drop_folder: Folder, one_drop: Identified, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -145,6 +146,7 @@ def stopping(number: int) -> object:
 @pytest.mark.parametrize(
     ("number", "status", "word"), [(signal.SIGINT, 130, "interrupted"), (signal.SIGTERM, 143, "terminated")]
 )
+@pytest.mark.slow
 def test_a_signal_after_the_fit_leaves_the_results(
     one_drop_folder: Folder, monkeypatch: pytest.MonkeyPatch, number: int, status: int, word: str
 ) -> None:

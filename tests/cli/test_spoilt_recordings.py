@@ -28,6 +28,7 @@ def test_whatever_is_no_reading_is_missing(tmp_path: Path, cell: str) -> None:
     assert "1 of 1800 samples is missing, the first in line 502; filled in" in filled["what"]
 
 
+@pytest.mark.slow
 def test_a_missing_sample_is_filled_in_and_told(folder: Folder) -> None:
     plain = run("identify", folder.path, "--json", "--no-report")
     folder.column("wheel_fl", lambda sample, number: "NaN" if sample == 500 else number)
@@ -112,6 +113,7 @@ def test_a_recording_without_a_release(tmp_path: Path) -> None:
     assert {found["status"] for found in said.json["parameters"].values()} == {"unidentifiable"}
 
 
+@pytest.mark.slow
 def test_front_drops_alone(tmp_path: Path) -> None:
     folder = copy_sedan(tmp_path / "front", ("empty_pitch_front", "loaded_pitch_front"))
     said = run("identify", folder.path, "--json", "--no-report")

@@ -35,6 +35,7 @@ def numbers(text: str) -> set[str]:
 
 
 @pytest.mark.parametrize("columns", [20, 40, 60, 80, 100, 120, 200])
+@pytest.mark.slow
 def test_no_width_cuts_a_word_or_a_number(folder: Folder, one_drop: Identified, columns: int) -> None:
     wide = run("check", "--no-drawings", folder.path, columns=300)
     narrow = run("check", "--no-drawings", folder.path, columns=columns)
@@ -75,6 +76,7 @@ def test_long_reasons_hang_below_their_dash(leafbus: Identified) -> None:
     assert all(line.startswith(("  - ", "    ")) for line in reasons)
 
 
+@pytest.mark.slow
 def test_colours_only_where_they_are_wanted(folder: Folder) -> None:
     quick = ("identify", folder.path, "--no-report")
     assert ESCAPE not in run(*quick).out
@@ -88,12 +90,14 @@ def test_json_is_json_even_where_colours_are_forced(folder: Folder) -> None:
     assert run("check", "--no-drawings", folder.path, "--json", FORCE_COLOR="1").json["faults"] == []
 
 
+@pytest.mark.slow
 def test_progress_stays_off_captured_streams(folder: Folder) -> None:
     for command in (("identify", "--no-report"), ("check", "--no-drawings"), ("modal",)):
         assert run(*command, folder.path).err == ""
 
 
 @pytest.mark.parametrize("name", ["with spaces", "Prüfstand Ölwanne 試験", "percent%d {brace} [bold]"])
+@pytest.mark.slow
 def test_names_of_every_kind(tmp_path: Path, name: str) -> None:
     folder = copy_sedan(tmp_path / name)
     folder.edit('name = "sedan"\n', "").edit('"empty_bounce.csv"', f'"{name}.csv"')
@@ -105,6 +109,7 @@ def test_names_of_every_kind(tmp_path: Path, name: str) -> None:
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="other systems refuse such names")
+@pytest.mark.slow
 def test_a_folder_whose_name_is_no_text(tmp_path: Path) -> None:
     folder = copy_sedan(tmp_path / os.fsdecode(b"caf\xe9"), DROPS[:1])
     folder.edit('name = "sedan"\n', "")
@@ -113,6 +118,7 @@ def test_a_folder_whose_name_is_no_text(tmp_path: Path) -> None:
     assert json.loads(done.stdout)["vehicle"]["name"] == "caf?"
 
 
+@pytest.mark.slow
 def test_relative_paths_from_anywhere(folder: Folder, monkeypatch: pytest.MonkeyPatch) -> None:
     absolute = run("check", folder.path / "campaign.toml", "--json", "--no-drawings")
     monkeypatch.chdir(folder.path)
@@ -170,6 +176,7 @@ def test_too_little_memory_is_said_with_what_to_do(folder: Folder, monkeypatch: 
     assert folder.listing() == before
 
 
+@pytest.mark.slow
 def test_a_pipe_that_closes(folder: Folder) -> None:
     command = [sys.executable, "-m", "sprung", "identify", "--no-report", str(folder.path)]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as running:  # noqa: S603

@@ -10,6 +10,7 @@ import pytest
 from command_line import Folder, linear_leafbus, run
 
 
+@pytest.mark.slow
 def test_it_prints_and_writes_only_where_it_is_asked_to(folder: Folder, tmp_path: Path) -> None:
     before = sorted(folder.path.rglob("*"))
     plain = run("validate", folder.path)

@@ -64,6 +64,7 @@ def lines(recording: sprung.campaign.Recording) -> list[list[str]]:
     [pytest.param(test, marks=pytest.mark.long) if test.vehicle is SCHOOL_BUS else test for test in FLEET],
     ids=[test.vehicle.name for test in FLEET],
 )
+@pytest.mark.slow
 def test_every_vehicle_of_the_fleet_is_found_and_accepted(test: DropTest) -> None:
     assert 5 <= len(test.drops) <= 10
     assert 200 <= test.rate <= 1000
@@ -244,6 +245,7 @@ def test_a_fault_names_all_or_not() -> None:
     assert not names_all(fault, ("body_rr",))  # which is not where it is said to be
 
 
+@pytest.mark.slow
 def test_what_came_of_it() -> None:
     gone = try_one(1, 0, INJURIES["no decay"])
     assert gone is not None

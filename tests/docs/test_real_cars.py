@@ -55,6 +55,7 @@ def test_equals_simulate_for_the_plain_car() -> None:
     ],
     ids=["anti-roll", "rebound", "progressive", "friction"],
 )
+@pytest.mark.slow
 def test_equals_simulate_for_laws_that_both_have(ours: dict[str, Any], theirs: dict[str, Any]) -> None:
     # Time stepping of nonlinear elements has errors of 1e-4 there; the noise is 2e-4 of the largest acceleration.
     assert difference(replace(PLAIN, **ours), replace(TABLE_1_CAR, **theirs), 2.5e-4) < 3e-4
@@ -110,6 +111,7 @@ def test_small_rotations_are_those_of_the_plane_equations() -> None:
         np.testing.assert_allclose(turning.readings[row], ours, rtol=0, atol=3e-9)
 
 
+@pytest.mark.slow
 def test_a_campaign_of_every_kind() -> None:
     tests = [draw_test(kind, 5) for kind in (*KINDS, *NO_VEHICLE)]
     short = [replace(one, drops=one.drops[1:2]) for one in tests]

@@ -236,6 +236,7 @@ def test_two_loggers_of_one_drop_are_put_together(tmp_path: Path, campaign: Camp
         ),
     ],
 )
+@pytest.mark.slow
 def test_wireless_loggers_that_all_call_their_channel_z(
     tmp_path: Path, campaign: Campaign, loggers: tuple[str, ...]
 ) -> None:

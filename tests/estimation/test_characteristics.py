@@ -42,6 +42,7 @@ def correlated(size: int, std: float) -> np.ndarray:
 
 
 @pytest.mark.parametrize("vehicle", [TABLE_1_CAR, UNEVEN], ids=lambda one: one.name)
+@pytest.mark.slow
 def test_uncertainties_are_those_of_draws(vehicle: Vehicle) -> None:
     fit = fit_of(vehicle, correlated(len(vehicle.parameters), 0.003))
     found = characteristics_of(fit, {}, vehicle.linear_model())

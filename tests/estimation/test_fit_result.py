@@ -102,6 +102,7 @@ def test_motion_begins_with_the_state_and_goes_backward(linear: FitResult) -> No
     np.testing.assert_allclose(slope[5:-5], motion[7, 5:-5], atol=0.02 * np.abs(motion[7]).max())
 
 
+@pytest.mark.slow
 def test_a_stepped_fit_leaves_the_same_on_the_same_decays(stepped: FitResult) -> None:
     again, before = (
         sums @ stepped.weights for sums in (stepped.residual_sums_of(stepped.decays), stepped.residual_sums)
@@ -114,6 +115,7 @@ def test_a_stepped_fit_leaves_the_same_on_the_same_decays(stepped: FitResult) ->
     assert stepped.most_likely_delays(stepped.decays, np.array([0.0])) == {}
 
 
+@pytest.mark.slow
 def test_decays_that_were_not_fitted_are_followed_from_rest(stepped: FitResult) -> None:
     """A copy under another name: its state is unknown, and is found from rest."""
     copy = replace(stepped.decays[0], file="copy.csv")
@@ -136,6 +138,7 @@ def test_one_drop_of_a_stepped_fit_is_that_drop(stepped: FitResult) -> None:
     np.testing.assert_allclose(alone.gradient, stepped.iterate.at.by_drop[0][2], rtol=1e-6)
 
 
+@pytest.mark.slow
 def test_impossible_memories_are_given_up(
     rubbing: tuple[Campaign, ModelStructure, tuple[FreeDecay, ...], Real], stepped: FitResult
 ) -> None:

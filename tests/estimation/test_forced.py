@@ -142,6 +142,7 @@ def test_noise_levels_of_inputs_and_outputs_are_found_though_inputs_are_unknown(
 
 
 @pytest.mark.parametrize("quantity", ["displacement", "force"])
+@pytest.mark.slow
 def test_one_of_displacement_and_force_is_enough(quantity: str) -> None:
     """With the force alone the tyres' rates are not determined by it, but by the wheels' motions over what drives them."""
     campaign = simulate(TABLE_1_CAR, drops=[{"excitation": "pads"}], noise=NOISE, seed=1, pads=PadMotion(duration=20.0))

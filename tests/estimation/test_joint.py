@@ -243,6 +243,7 @@ def test_body_sensors_alone_are_enough_for_the_body() -> None:
     assert estimates["m_s"].status == "estimated"
 
 
+@pytest.mark.slow
 def test_noise_feigns_no_knowledge_of_motions_nobody_excited() -> None:
     """Bounce drops only: the roll modes have amplitudes fitted to noise, and no information must come of them."""
     drops = [{"wheels": ["fl", "fr", "rl", "rr"], "file": f"bounce_{i}.csv"} for i in range(5)]

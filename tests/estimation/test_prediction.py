@@ -55,6 +55,7 @@ def test_one_step_predicts_what_a_fit_without_the_drop_does(position: int, chang
     assert found.squares - found.fitted == pytest.approx(grown, rel=0.1, abs=0.5)
 
 
+@pytest.mark.slow
 def test_where_nothing_is_wrong_distances_are_chi_squared() -> None:
     found: list[Prediction] = []
     for seed in range(12):

@@ -168,6 +168,7 @@ def test_asymmetric_intervals_hold_the_truth_as_often_as_they_say() -> None:
     assert any((limits(curvature)[1] or np.inf) > wheelbase for curvature, _ in estimates if curvature.interval95)
 
 
+@pytest.mark.slow
 def test_an_interval_without_a_lower_end_says_so() -> None:
     """t_f, one of two half-distances that resist the same roll, under 2 m/s² of noise: the other can do it alone."""
     campaign = drops(seed=0, noise=2.0)

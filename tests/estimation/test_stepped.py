@@ -93,6 +93,7 @@ def test_scores_are_those_of_the_linear_fit(
     assert by_steps == pytest.approx(by_modes, rel=0.15)
 
 
+@pytest.mark.slow
 def test_scores_of_forces_need_no_steps(
     campaign: Campaign, plain: ModelStructure, optimum: FitResult, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -33,6 +33,7 @@ def car(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.mark.parametrize("name", all_the_others_are_long(CASES))
+@pytest.mark.slow
 def test_a_drop_is_ours(name: str, tmp_path: Path) -> None:
     vehicle, load = case(name)
     moved = drop_fmu(export.fmu(vehicle, load).save(tmp_path / "x.fmu"), vehicle)

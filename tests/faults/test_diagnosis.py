@@ -218,6 +218,7 @@ def shortened(names: Iterable[str]) -> list[Any]:
 
 
 @pytest.mark.parametrize("name", shortened(MENDED))
+@pytest.mark.slow
 def test_it_is_put_right_and_named(name: str) -> None:
     """Gains and places are taken from the records, and cost the others little: within a standard uncertainty in any case."""
     spoil, code, where = MENDED[name]
@@ -321,6 +322,7 @@ def test_one_after_the_other() -> None:
     assert distance(result) < 1.0
 
 
+@pytest.mark.slow
 def test_what_belongs_to_nothing_is_left_out_and_not_explained_away() -> None:
     """One channel holds something else altogether: no exchange makes sense of it."""
     noise = np.random.default_rng(1)

@@ -43,6 +43,7 @@ def test_one_fault_takes_few_fits(name: str, number: int) -> None:
 
 
 @pytest.mark.parametrize("number", [pytest.param(2, marks=pytest.mark.long), 4])
+@pytest.mark.slow
 def test_a_low_pass_is_no_delay(number: int) -> None:
     """Shortly after the landing, when the wheels hop, the two differ by far more than by chance."""
     run, (channel,) = analysed("low-pass", number)

@@ -48,6 +48,7 @@ def identified(campaign: sprung.Campaign) -> sprung.Result:
 @pytest.mark.parametrize(
     ("channel", "order", "corner"), [pytest.param("wheel_fr", 1, 40.0, marks=pytest.mark.long), ("wheel_rl", 2, 30.0)]
 )
+@pytest.mark.slow
 def test_it_is_named_and_undone(channel: str, order: int, corner: float) -> None:
     """The channel, the order and the corner; no parameter is moved by more than the noise moves it."""
     result = identified(recorded(order, corner, channel))
@@ -66,6 +67,7 @@ def test_it_is_named_and_undone(channel: str, order: int, corner: float) -> None
         assert estimate.std < 0.004 * abs(estimate.value)
 
 
+@pytest.mark.slow
 def test_the_same_in_all_channels_is_no_fault() -> None:
     """Every mode of free vibration is filtered as a whole: amplitudes change, the vehicle does not."""
     channels = [sensor.channel for sensor in fine().sensors]

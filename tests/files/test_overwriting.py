@@ -157,6 +157,7 @@ for moment in range({moments}):
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="processes are killed in the middle of a write")
+@pytest.mark.slow
 def test_a_process_killed_at_any_step_leaves_old_new_or_none_and_the_next_puts_it_in_order(tmp_path: Path) -> None:
     """Without any clearing up, at every step that touches the disk, into an empty folder and over older files."""
     moments = 50

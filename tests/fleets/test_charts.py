@@ -34,6 +34,7 @@ def simulated_run_lengths(width: int, limit: float, charts: int, longest: int) -
 
 
 @pytest.mark.parametrize("width", [1, 2, pytest.param(13, marks=pytest.mark.long)])
+@pytest.mark.slow
 def test_the_run_length_is_that_of_a_simulation(width: int) -> None:
     limit = alarm_limit(width, 50.0)
     assert average_run_length(limit, width) == pytest.approx(50, rel=1e-3)
@@ -84,6 +85,7 @@ def test_the_limit_of_independent_parameters_is_that_of_sidak() -> None:
     assert largest_component(np.diag(np.arange(1.0, 8.0)), 500) == pytest.approx(sidak, abs=0.03)
 
 
+@pytest.mark.slow
 def test_a_rig_that_drifts_is_told_from_a_vehicle_that_deviates() -> None:
     fleet = draw_fleet(300, np.random.default_rng(9), drift=150, weak=80)
     chart, population = chart_vehicles(fleet)

@@ -86,6 +86,7 @@ def test_a_row_is_the_result_of_identify(identified: Identified) -> None:
     )
 
 
+@pytest.mark.slow
 def test_it_goes_on_and_does_a_changed_recording_anew(identified: Identified, tmp_path: Path) -> None:
     folder, _ = identified
     shutil.copytree(folder / "out", tmp_path / "out")

@@ -230,6 +230,7 @@ def test_any_bytes_are_read_or_refused(tmp_path: Path, content: bytes) -> None:
 @pytest.mark.parametrize(
     "row", ["{i},1,2\n", "{i},1.2345,-2.25,12.5\n", "{i},1.2345,overload\n", "a\n", "1\n", ",", "\n,,"]
 )
+@pytest.mark.slow
 def test_memory_is_bounded_by_the_size_of_the_file(tmp_path: Path, row: str) -> None:
     size = 100_000
     text = "time,a,b,c\n" if row.count(",") > 2 else "time,a,b\n"

@@ -53,6 +53,7 @@ def test_sound_files_are_read(tmp_path: Path, name: str) -> None:
 
 
 @pytest.mark.parametrize("name", HERE)
+@pytest.mark.slow
 def test_any_file_is_read_or_refused_in_words(tmp_path: Path, name: str) -> None:
     reader = reader_of(name)
     files = sound_files(reader)

@@ -169,6 +169,7 @@ def in_order(table: SampleTable, names: list[str]) -> list[int]:
     return [table.channels.index(name) for name in called]
 
 
+@pytest.mark.slow
 def test_eight_channels_of_many_take_little_memory(path: Path) -> None:
     wanted = [NAMES[column] for column in WANTED]
     tracemalloc.start()
@@ -183,6 +184,7 @@ def test_eight_channels_of_many_take_little_memory(path: Path) -> None:
     assert peak < 4 * values.nbytes + 8e6 + more
 
 
+@pytest.mark.slow
 def test_pieces_and_ranges_are_parts_of_the_whole(path: Path) -> None:
     table = read_table(path)
     columns = in_order(table, [NAMES[column] for column in WANTED])
@@ -229,6 +231,7 @@ def test_pieces_read_no_more_at_once_than_is_worth_it() -> None:
     assert max(asked) <= BUDGET < 0.1 * sum(asked)
 
 
+@pytest.mark.slow
 def test_text_far_down_is_found_where_somebody_needs_the_column(tmp_path: Path) -> None:
     rows = [f"{index / 1000:.3f},{index},{index}.5" for index in range(250_000)]
     rows[200_000] = "200.000,OVLD,1.5"

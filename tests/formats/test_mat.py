@@ -264,6 +264,7 @@ def test_a_real_recording(shared: Path) -> None:
 
 @settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=150, deadline=None)
 @given(data=st.data(), version=st.sampled_from(["4", "5", "7", "7.3"]))
+@pytest.mark.slow
 def test_damage_is_refused_or_harmless(tmp_path: Path, data: st.DataObject, version: str) -> None:
     path = tmp_path / "x.mat"
     content: dict[str, Any] = {"time": TIME, "a": A}

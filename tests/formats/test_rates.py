@@ -97,6 +97,7 @@ def written(fast: Campaign, folder: Path, write: Write, other: int, every: int) 
 
 @pytest.mark.parametrize("write", WRITERS.values(), ids=WRITERS.keys())
 @pytest.mark.parametrize("every", [1, 4], ids=["twice the rate", "half the rate"])
+@pytest.mark.slow
 def test_a_channel_at_another_rate(
     fast: Campaign, usual: sprung.Result, tmp_path: Path, write: Write, every: int
 ) -> None:

@@ -94,6 +94,7 @@ def test_every_method_is_exact_without_noise_behind_the_one_door(method: str) ->
     assert all(mode.shape.shape == (8,) for mode in found)
 
 
+@pytest.mark.slow
 def test_order_is_obeyed() -> None:
     measured = records(TABLE_1_CAR, 0.02, 0.0, seed=5)
     for method in METHODS:

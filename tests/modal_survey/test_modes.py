@@ -72,6 +72,7 @@ def test_check_names_every_drop_and_its_limits() -> None:
         assert drop.end == pytest.approx(3.6, abs=0.01)
 
 
+@pytest.mark.slow
 def test_diagram_and_amplitudes_come_where_they_are_asked_for() -> None:
     campaign = sprung.simulate(TABLE_1_CAR, noise=0.005, seed=1)
     plain = sprung.modes(campaign)["empty"]

@@ -65,6 +65,7 @@ def test_exact_from_any_load(vehicle: Vehicle, load: type) -> None:
 
 @given(separate, st.sampled_from([body_load, bag]))
 @settings(max_examples=20, deadline=None)
+@pytest.mark.slow
 def test_exact_with_springs_and_dampers_at_half_distances_of_their_own(vehicle: Vehicle, load: type) -> None:
     assert_exact(vehicle, (EMPTY, load(vehicle)))
 

@@ -42,6 +42,7 @@ def found() -> dict[str, TermDetectability]:
 @pytest.mark.parametrize(
     "candidate", [RUBBER, pytest.param(FRICTION, marks=pytest.mark.long)], ids=["zener", "friction"]
 )
+@pytest.mark.slow
 def test_the_gain_is_that_of_fits_with_and_without_the_term(candidate: TermCandidate) -> None:
     """At four times the size from which it is found, sixteen times the gain that is required.
 

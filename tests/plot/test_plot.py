@@ -184,6 +184,7 @@ def test_what_is_not_there_is_named(result: Result) -> None:
         ),
     ],
 )
+@pytest.mark.slow
 def test_matplotlib_is_loaded_only_by_who_draws_with_it(done: str, said: str) -> None:
     run = subprocess.run([sys.executable, "-c", f"import sys\n{done}"], capture_output=True, text=True, check=True)  # noqa: S603
     assert run.stdout.strip() == said

@@ -31,6 +31,7 @@ def drifting(clean: Campaign, size: float) -> Campaign:
 
 
 @pytest.mark.parametrize(("duration", "rest", "size"), [(3.2, 0.4, 0.2), (6.0, 0.5, 0.5)])
+@pytest.mark.slow
 def test_an_even_drift_is_taken_off_and_the_result_is_the_better_for_it(
     duration: float, rest: float, size: float
 ) -> None:
@@ -63,6 +64,7 @@ def test_a_level_that_settles_elsewhere_is_named_and_left_alone() -> None:
 
 @settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(vehicle=vehicles, noise=st.floats(0.002, 0.2), duration=st.sampled_from([2.0, 3.2, 6.0]))
+@pytest.mark.slow
 def test_what_still_moves_is_no_drift(vehicle: Vehicle, noise: float, duration: float) -> None:
     campaign = simulate(vehicle, noise=noise, duration=duration, offset=0.1, seed=1)
     assert all(decay.faults == () for decay in prepare(campaign).decays)

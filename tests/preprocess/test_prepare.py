@@ -22,6 +22,7 @@ def landing(vehicle: Vehicle, drop: Drop, rest: float) -> float:
 
 @settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(vehicle=vehicles)
+@pytest.mark.slow
 def test_no_decay_begins_before_the_last_landing(vehicle: Vehicle) -> None:
     campaign = simulate(vehicle, noise=0.02, seed=1)
     for decay, drop in zip(prepare(campaign).decays, campaign.drops, strict=True):

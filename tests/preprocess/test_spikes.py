@@ -41,6 +41,7 @@ def spiked(recording: Recording, count: int, width: int, size: float, seed: int)
     height=st.floats(0.005, 0.15),
     coarse=st.booleans(),
 )
+@pytest.mark.slow
 def test_no_landing_and_no_noise_is_a_spike(
     vehicle: Vehicle, rate: float, noise: float, height: float, coarse: bool
 ) -> None:

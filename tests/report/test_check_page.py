@@ -127,6 +127,7 @@ def browser() -> Iterator[Any]:
         opened.close()
 
 
+@pytest.mark.slow
 def test_in_a_browser(browser: Any, page: str, tmp_path: Path) -> None:
     """At three widths, light and dark: nothing sticks out, every text has enough contrast, nothing is complained of."""
     (tmp_path / "check.html").write_text(page, encoding="utf-8")

@@ -43,6 +43,7 @@ def test_nothing_is_lost_at_any_width(table: Table, width: int) -> None:
 
 
 @given(tables())
+@pytest.mark.slow
 def test_a_table_that_fits_has_one_line_for_each_row(table: Table) -> None:
     lines = arrange(table, 10_000)
     assert len(lines) == 1 + len(table.rows)

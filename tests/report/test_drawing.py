@@ -133,6 +133,7 @@ def test_wheels_that_fell_otherwise_are_told(campaign: Campaign) -> None:
     assert "wheels detected at the release: fl, rl" in said
 
 
+@pytest.mark.slow
 def test_long_recordings_stay_small(campaign: Campaign) -> None:
     recording = campaign.recordings[0]
     random = np.random.default_rng(1)

@@ -52,6 +52,7 @@ def test_it_is_small_and_asks_for_nothing(page: str) -> None:
     assert not re.search(r"https?:|//[a-z]|@import|url\(|<link[^>]*href=\"(?!data:)|src=", page)
 
 
+@pytest.mark.slow
 def test_the_folder_alone_gives_it_again_byte_for_byte(folder: Path, tmp_path: Path) -> None:
     for name in ("results.json", "series.npz"):
         shutil.copy(folder / name, tmp_path)
@@ -108,6 +109,7 @@ def test_curves_are_where_the_numbers_are(result: Result, page: str) -> None:
     assert read[0] == pytest.approx(measured[0], abs=3 * abs(slope) * 0.1)
 
 
+@pytest.mark.slow
 def test_forty_drops_take_no_ten_seconds(result: Result) -> None:
     copies = [f"{name}_{count}" for count in range(4) for name in result.series]
     many = replace(
@@ -161,6 +163,7 @@ def opened(browser: Any, folder: Path) -> Iterator[Any]:
 
 @pytest.mark.parametrize("width", WIDTHS)
 @pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.slow
 def test_it_reads_well(opened: Any, width: int, scheme: str) -> None:
     page = opened(width, color_scheme=scheme)
     assert page.evaluate("document.documentElement.scrollWidth") <= width
@@ -313,6 +316,7 @@ def test_channels_are_switched_off_and_a_pull_zooms(opened: Any) -> None:
     page.wait_for_function(f"([one, before]) => ({curve})(one) !== before", arg=[drawing.element_handle(), before])
 
 
+@pytest.mark.slow
 def test_a_figure_is_saved_by_a_click(opened: Any, result: Result, tmp_path: Path) -> None:
     page = opened(1440, color_scheme="dark")
     figure = open_figure(page, "comparison")

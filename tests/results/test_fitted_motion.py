@@ -81,6 +81,7 @@ def test_velocities_and_accelerations_are_derivatives(linear: Result, digressive
             assert np.abs(middle).max(axis=1) == pytest.approx(0, abs=0.02 * np.abs(higher).max())
 
 
+@pytest.mark.slow
 def test_a_nonlinear_vehicle_moves_as_simulated(digressive: Result) -> None:
     drop = next(iter(digressive.series))
     found = fitted_motion(digressive, drop)

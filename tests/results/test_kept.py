@@ -90,6 +90,7 @@ def test_everything_comes_back_from_the_folder(result: Result, folder: Path) -> 
     assert report_html(loaded) == report_html(result)
 
 
+@pytest.mark.slow
 def test_amplitudes_are_what_a_validation_shows(campaign: Campaign, result: Result) -> None:
     document = json.loads(result.to_json())["amplitude"]
     assert document == sprung.validate(campaign, extras=()).document()["amplitude"]

@@ -164,6 +164,7 @@ def test_one_array_is_no_series(copy: Path) -> None:
 @given(
     st.sampled_from(["results.json", "series.npz"]), st.floats(0, 1, exclude_max=True), st.booleans(), st.integers(0, 7)
 )
+@pytest.mark.slow
 def test_a_changed_bit_is_refused_or_means_nothing(
     folder: Path, copy: Path, file: str, place: float, at_ends: bool, bit: int
 ) -> None:

@@ -44,6 +44,7 @@ BOOT = Load(name="boot", items=(Item(mass=120.0, position=(-2.4, 0.0, 0.6)),))
 
 @pytest.mark.parametrize("load", [None, BOOT], ids=["empty", "loaded"])
 @pytest.mark.parametrize("name", NAMES)
+@pytest.mark.slow
 def test_numbers_are_finite_and_of_usual_size(name: str, load: Load | None) -> None:
     car = TABLE_1_CAR.with_values(**TERMS[name])
     plain, found = (

@@ -28,6 +28,7 @@ def identified(weighed: bool = True, noise: float = 0.2) -> Result:
 
 
 @pytest.mark.parametrize(("draws", "tolerance"), [(50, 0.4), pytest.param(400, 0.15, marks=pytest.mark.long)])
+@pytest.mark.slow
 def test_uncertainties_are_those_of_draws(draws: int, tolerance: float) -> None:
     """Vehicles drawn from the joint distribution: their spread, which has a statistical error of 10 and 3.5 %."""
     result = identified()
@@ -111,6 +112,7 @@ def test_uncertain_mass_of_a_load_counts() -> None:
     assert added == pytest.approx(15 * 9.80665 * 2.5 / 2.76 / 2, rel=0.02)
 
 
+@pytest.mark.slow
 def test_saved_and_read_again_it_is_the_same(tmp_path: object) -> None:
     result = identified(weighed=False)
     again = sprung.load(result.save(f"{tmp_path}/results"))

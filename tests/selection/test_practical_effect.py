@@ -54,6 +54,7 @@ def errors(result: sprung.Result) -> dict[str, float]:
     ],
     ids=["progressive", "rigid-axle", "friction"],
 )
+@pytest.mark.slow
 def test_a_significant_term_without_effect_is_left_out_and_named(more: dict[str, float], term: str) -> None:
     """The issue's cases: a progressive rate of 0.06 per metre, a rigid axle that is none; 1 N of friction."""
     result = sprung.identify(race_car(more))
@@ -67,6 +68,7 @@ def test_a_significant_term_without_effect_is_left_out_and_named(more: dict[str,
     assert max(errors(result).values()) < 0.015
 
 
+@pytest.mark.slow
 def test_a_detail_outside_the_model_brings_no_term_into_it() -> None:
     """Another integrator, and tyres that push and never pull."""
     smooth = {"F_f": 0.0, "F_r": 0.0, "s_f": 1e6, "s_r": 1e6, "r_f": 1.0, "r_r": 1.0}

@@ -9,6 +9,7 @@ from sprung.vehicle import TABLE_1_CAR
 
 
 @pytest.mark.parametrize("seed", [1057, 1097])
+@pytest.mark.slow
 def test_a_term_that_is_not_determined_in_the_end_is_left_out(seed: int) -> None:
     """A Zener branch is accepted on the way; in the end nothing determines its relaxation times."""
     result = sprung.identify(FLEET[2].campaign(seed, coarse))

@@ -55,6 +55,7 @@ def test_what_refines_a_refused_term_goes_with_it() -> None:
 @pytest.mark.parametrize(
     "loss", [0.0, pytest.param(60.0, marks=pytest.mark.long)], ids=["elastic mounts", "mounts with damping"]
 )
+@pytest.mark.slow
 def test_damping_of_mounts_is_found_where_it_is(loss: float) -> None:
     """A mount without damping of its own stays one: a fit that lets its damping go negative does not cost the mount."""
     car = TABLE_1_CAR.with_values(k_df=12 * TABLE_1_CAR.k_sf, k_dr=12 * TABLE_1_CAR.k_sr, c_df=loss, c_dr=loss)

@@ -76,6 +76,7 @@ def test_friction_that_is_the_same_under_every_load_is_not_refined(loads: tuple[
     assert result.verdict.state == "accept"
 
 
+@pytest.mark.slow
 def test_a_second_knee_is_selected_and_shown() -> None:
     """The curve is monotone, with its band, and the true one within that; a rounded knee explains less."""
     car, result = identified(TWO_KNEES, "empty")

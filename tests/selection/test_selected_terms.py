@@ -32,6 +32,7 @@ LOAD = {"name": "ballast", "items": [{"mass": 140.0, "position": (-1.0, 0.3, 0.5
         WITH_ENGINE.with_values(x_e=-2.9, k_e=160 * (2 * np.pi * 7) ** 2),
     ],
 )
+@pytest.mark.slow
 def test_an_engine_is_selected(vehicle: Vehicle) -> None:
     campaign = sprung.simulate(vehicle, loads=[BALLAST], noise=0.02, seed=1)
     result = sprung.identify(campaign)
@@ -46,6 +47,7 @@ def test_an_engine_is_selected(vehicle: Vehicle) -> None:
     assert len(result.modes["empty"]) == 8
 
 
+@pytest.mark.slow
 def test_a_requested_engine_is_fitted() -> None:
     campaign = sprung.simulate(WITH_ENGINE, loads=[BALLAST], noise=0.02, seed=1, duration=1.6)
     assert sprung.identify(campaign, extras=["engine"]).fit.model == ("engine",)
@@ -75,6 +77,7 @@ def test_a_body_that_could_carry_no_usual_engine_is_identified() -> None:
 
 
 @pytest.mark.parametrize(("more", "term"), [(UNEVEN, "asymmetry"), (RIGID, "rigid-axle")])
+@pytest.mark.slow
 def test_asymmetry_and_a_rigid_axle_are_selected(more: dict[str, float], term: str) -> None:
     """identify(simulate(p)) = p within five standard errors, the term selected and no other."""
     car = Vehicle.from_parameters(TABLE_1_CAR.parameters | more)

@@ -46,6 +46,7 @@ def test_they_act_as_those_of_python(tmp_path: Path) -> None:
         assert_array_equal(one.values, other.values)
 
 
+@pytest.mark.slow
 def test_a_plan_counts_with_them(tmp_path: Path) -> None:
     """A plank of twice the height tells more of the tyres."""
 

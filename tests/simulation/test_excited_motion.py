@@ -42,6 +42,7 @@ def test_a_low_bump_is_the_half_sine_of_the_paper() -> None:
     ],
     ids=["half-sine", "plank", "kerb"],
 )
+@pytest.mark.slow
 def test_a_pass_obeys_the_equations_of_motion(bump: Bump, vehicle: Vehicle) -> None:
     """An ordinary differential equation solver with the same ground, wheels that may leave it included."""
     wheels: tuple[Wheel, ...] = ("fl", "rl")
@@ -92,6 +93,7 @@ def test_pushes_by_hand_end_when_the_last_one_does() -> None:
 
 @pytest.mark.parametrize("excitation", ["push", "pass"])
 @pytest.mark.parametrize("shapes", [("hand", "half-sine"), ("rope", "plank"), ("lift", "kerb")])
+@pytest.mark.slow
 def test_a_vehicle_that_is_hardly_nonlinear_moves_like_a_linear_one(excitation: str, shapes: tuple[str, str]) -> None:
     push, bump = shapes
     test = {

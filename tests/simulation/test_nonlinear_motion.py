@@ -26,6 +26,7 @@ TALL = TABLE_1_CAR.with_values(cg_height=0.75, wheel_height=0.3)
 
 
 @pytest.mark.parametrize("vehicle", [TABLE_1_CAR, SCHOOL_BUS, UNEVEN, TALL])
+@pytest.mark.slow
 def test_hardly_any_force_makes_hardly_any_difference(vehicle: Vehicle) -> None:
     """Through lift-off, flight and landing it is the drop that is known exactly; a wheel that hangs among them."""
     almost = vehicle.with_values(r_f=1 + 1e-9, r_r=1 + 1e-9)

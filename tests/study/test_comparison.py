@@ -195,6 +195,7 @@ def test_scatter_of_a_line(same: list[sprung.Result], worn: sprung.Result) -> No
     assert not found.scatter["k_sf"].stands_out
 
 
+@pytest.mark.slow
 def test_scatter_is_what_was_put_in() -> None:
     """Lines of 20 with a spread of 2 about 100 and errors of 1; on half of them one is 16 away."""
     random = np.random.default_rng(3)

@@ -109,6 +109,7 @@ def test_a_rejected_campaign_has_no_estimates() -> None:
     assert (one.estimated, one.undetermined, one.bias, one.coverage.of) == (0, 1, None, 0)
 
 
+@pytest.mark.slow
 def test_the_command(tmp_path: Path) -> None:
     (tmp_path / "car.toml").write_text(VEHICLE)
     said = run("study", tmp_path / "car.toml", "--campaigns", "3", "-o", tmp_path / "out", "--workers", "1")
@@ -120,6 +121,7 @@ def test_the_command(tmp_path: Path) -> None:
     assert again.json["parameters"]["k_sf"]["true"] == 17000
 
 
+@pytest.mark.slow
 def test_known_values_without_uncertainty_are_the_same_in_all() -> None:
     known = {"total_mass": KnownValue(TABLE_1_CAR.total_mass)}
     found = sprung.study.monte_carlo(TABLE_1_CAR, {**TEST, "known": known}, 2, 1)

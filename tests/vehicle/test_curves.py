@@ -53,6 +53,7 @@ def test_a_curve_is_the_sum_of_its_laws_and_the_mean_of_both_sides(name: str, tr
 
 
 @pytest.mark.parametrize("name", [name for name in FORCE_CURVES if "_" in name])
+@pytest.mark.slow
 def test_gradients_are_those_of_differences(name: str) -> None:
     found, names, values = elements(name, *(extra for extra in EXTRAS if extra != "engine"))
     steps = 1e-6 * values

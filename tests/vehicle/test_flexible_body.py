@@ -91,6 +91,7 @@ def test_without_noise_identification_returns_what_was_simulated(car: Vehicle) -
 
 
 @CARS
+@pytest.mark.slow
 def test_it_is_estimated_within_its_errors(car: Vehicle) -> None:
     result = sprung.identify(sprung.simulate(car, loads=[BAGS], noise=0.02, seed=1), extras=car.extras)
     assert result.verdict.state == "accept"
@@ -101,6 +102,7 @@ def test_it_is_estimated_within_its_errors(car: Vehicle) -> None:
         assert abs(found.value - value) < 4 * found.std
 
 
+@pytest.mark.slow
 def test_people_on_seats_are_selected() -> None:
     campaign = sprung.simulate(SEATED, loads=[BAGS], noise=0.02, seed=1)
     assert sprung.identify(campaign).fit.model == ("occupants",)

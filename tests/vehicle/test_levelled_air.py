@@ -25,6 +25,7 @@ def test_the_rate_grows_with_what_the_spring_carries() -> None:
     np.testing.assert_allclose(CAR.matrices().K, TABLE_1_CAR.matrices().K, rtol=1e-12, atol=1e-6)
 
 
+@pytest.mark.slow
 def test_a_small_motion_is_that_of_the_linear_vehicle_under_any_load() -> None:
     """A sealed spring is stiffer where the load has pressed it together; one that is levelled is not."""
     drops = [{"wheels": ("fl", "fr", "rl", "rr"), "load": "ballast", "height": 0.002}]

@@ -138,6 +138,7 @@ def rough(roughness: float, speed: float, seed: int) -> Road4:
         ({"F": 60.0, "s": 4e5}, "B"),
     ],
 )
+@pytest.mark.slow
 def test_random_response_is_that_of_a_simulation(further: dict[str, float], road: str) -> None:
     """Statistical linearisation takes the motion as Gaussian, which that of a damper three times as stiff in rebound is not:
     its travel is 7 % too small, all else within 6 %. Of this 2 % are the statistics of 400 roads of 3 s."""
@@ -155,6 +156,7 @@ def test_random_response_is_that_of_a_simulation(further: dict[str, float], road
 
 
 @pytest.mark.parametrize("further", [{"r": 2.5}, {"F": 120.0, "s": 2e5}])
+@pytest.mark.slow
 def test_plate_response_is_that_of_a_simulation(further: dict[str, float]) -> None:
     """First harmonic of the force on a plate that moves by ±3 mm, after 4 s: higher harmonics leave up to 5 % where the force
     is small, and 2 % from the resonance on, where testers look."""

@@ -119,6 +119,7 @@ def test_without_noise_identification_returns_what_was_simulated(car: Vehicle) -
 
 
 @pytest.mark.parametrize("car", [WITH_MOUNTS, WITH_BRANCHES, WITH_BOTH])
+@pytest.mark.slow
 def test_requested_rubber_is_estimated_within_its_errors(car: Vehicle) -> None:
     campaign = sprung.simulate(car, loads=[BALLAST], noise=0.02, seed=4)
     result = sprung.identify(campaign, extras=car.extras)
@@ -135,6 +136,7 @@ def test_requested_rubber_is_estimated_within_its_errors(car: Vehicle) -> None:
     "car",
     [TABLE_1_CAR, *(pytest.param(car, marks=pytest.mark.long) for car in (WITH_MOUNTS, WITH_BRANCHES)), WITH_BOTH],
 )
+@pytest.mark.slow
 def test_rubber_is_selected_where_it_is(car: Vehicle) -> None:
     campaign = sprung.simulate(car, loads=[BALLAST], noise=0.02, seed=1)
     assert sprung.identify(campaign).fit.model == car.extras

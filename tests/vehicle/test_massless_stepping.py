@@ -87,6 +87,7 @@ def test_rebound_behind_a_mount_is_that_of_newtons_equations() -> None:
     assert np.all(np.abs(found - there.y.T) < 5e-4 * np.abs(found).max(axis=0))
 
 
+@pytest.mark.slow
 def test_derivatives_are_those_of_the_steps_themselves(monkeypatch: pytest.MonkeyPatch) -> None:
     """Forces are solved for to 1e-6 of the largest, which differences of them would show: here almost to rounding."""
     monkeypatch.setattr("sprung.vehicle.stepping._SOLVED", 1e-10)

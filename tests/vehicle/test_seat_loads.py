@@ -41,6 +41,7 @@ def test_a_held_body_lets_them_move_at_their_own_frequency() -> None:
         assert own.C[place, place] / own.M[place, place] == pytest.approx(2 * 0.3 * OMEGA)
 
 
+@pytest.mark.slow
 def test_they_are_identified() -> None:
     drops = [
         {"wheels": wheels, "load": load}

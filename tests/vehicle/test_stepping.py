@@ -260,6 +260,7 @@ def test_derivatives_are_those_of_the_steps_themselves(ground: bool) -> None:
         check(len(names) + place, np.moveaxis(ends[:, :, place], 1, 0), size)
 
 
+@pytest.mark.slow
 def test_knots_of_a_damper_curve_leave_the_steps_of_second_order() -> None:
     """Forces run straight within a step whether or not a knot lies in it: half the step leaves about a quarter of the error.
 
