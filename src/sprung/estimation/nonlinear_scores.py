@@ -82,14 +82,15 @@ def score_nonlinear_terms(
 
 def _alike(decays: Sequence[FreeDecay], at: ClosedFormAt) -> list[list[int]]:
     """Return the positions of decays in groups of the same modes, none of much more samples than stay in a cache."""
+    sizes = [_thinned(decay)[1] for decay in decays]
     groups: dict[tuple[int, int], list[list[int]]] = {}
-    for drop, decay in enumerate(decays):
-        _, samples = _thinned(decay)
+    for drop in range(len(decays)):
         parts = groups.setdefault(at.group_of(drop), [[]])
-        if (len(parts[-1]) + 1) * samples > _LARGEST:
+        together = [*parts[-1], drop]
+        if parts[-1] and len(together) * max(sizes[one] for one in together) > _LARGEST:
             parts.append([])
         parts[-1].append(drop)
-    return [part for parts in groups.values() for part in parts if part]
+    return [part for parts in groups.values() for part in parts]
 
 
 def _thinned(decay: FreeDecay) -> tuple[int, int]:
@@ -157,7 +158,7 @@ def _of_drops(
             for decay, count in zip(decays, counts.tolist(), strict=True)
         ]
     )
-    products = _products(sums, basis, np.swapaxes(by_name, 1, 2), weights, samples / counts)
+    products = _products(sums, basis, by_name, weights, samples / counts)
     own_state = np.arange(by_parameter.shape[1], sums.shape[1])
     products[:, own_state, own_state] += initial_state_prior_std(len(force_rows), len(own_state)) ** -2.0
     # The initial state is eliminated.
@@ -177,7 +178,7 @@ def _products(sums: Real, basis: Real, sampled: Real, weights: Real, shares: Rea
     basis
         Shape (drop, basis, time), without its mean over the samples of the drop.
     sampled
-        The others, zero beyond the end of each drop, shape (drop, channel, sampled, time).
+        The others, zero beyond the end of each drop, shape (drop, sampled, channel, time).
     weights
         Shape (drop, channel).
     shares
@@ -192,16 +193,16 @@ def _products(sums: Real, basis: Real, sampled: Real, weights: Real, shares: Rea
     weighted = (weights[:, None, :, None] * sums).reshape(flat)
     transposed = np.swapaxes(basis, 1, 2)
     among_sums = weighted @ np.swapaxes((sums @ (basis @ transposed)[:, None]).reshape(flat), 1, 2)
-    met = np.moveaxis(sampled @ transposed[:, None], 2, 3)
-    across = weighted @ met.reshape(len(met), -1, met.shape[-1])
-    squares = sampled @ np.swapaxes(sampled, 2, 3)
-    sizes, means = sampled.shape[-1] * shares, sampled.mean(axis=-1)
+    drops, count, channels, samples = sampled.shape
+    met = sampled.reshape(drops, -1, samples) @ transposed
+    across = weighted @ np.swapaxes(met.reshape(drops, count, -1), 1, 2)
+    by_channel = np.swapaxes(sampled, 1, 2)
+    squares = by_channel @ np.swapaxes(by_channel, 2, 3)
+    sizes, means = samples * shares, by_channel.mean(axis=-1)
     squares -= sizes[:, None, None, None] * means[..., :, None] * means[..., None, :]
-    among_sampled = (weights[:, None] @ squares.reshape(*weights.shape, -1)).reshape(len(squares), *squares.shape[2:])
-    above, below = (
-        np.concatenate([among_sums, across], axis=2),
-        np.concatenate([np.swapaxes(across, 1, 2), among_sampled], axis=2),
-    )
+    among_sampled = (weights[:, None] @ squares.reshape(drops, channels, -1)).reshape(drops, count, count)
+    above = np.concatenate([among_sums, across], axis=2)
+    below = np.concatenate([np.swapaxes(across, 1, 2), among_sampled], axis=2)
     return np.concatenate([above, below], axis=1)
 
 
