@@ -45,18 +45,18 @@ class Turns:
         return [name for _, name in sorted(turns)]
 
     def best(self, name: str) -> float:
-        """Give the least time of any round, s."""
+        """Return the least time of any round, s."""
         return min(self.seconds[name])
 
     def ratio(self, name: str, other: str, **wanted: float) -> dict[str, float]:
-        """Give time over time, round by round: their median and quartiles, with what is wanted, ``least`` or ``most``."""
+        """Return time over time, round by round: their median and quartiles, with what is wanted, ``least`` or ``most``."""
         ratios = np.divide(self.seconds[name], self.seconds[other])
         low, median, high = np.quantile(ratios, [0.25, 0.5, 0.75]).tolist()
         return {"ratio": median, "low": low, "high": high} | wanted
 
 
 def peak_memory(run: Run) -> int:
-    """Give the most that a run has allocated at any time, bytes; NumPy tells of its arrays."""
+    """Return the most that a run has allocated at any time, bytes; NumPy tells of its arrays."""
     tracemalloc.start()
     try:
         run()

@@ -54,7 +54,7 @@ class PlainFit:
         return 1.2 * np.array([TABLE_1_CAR.parameters[name] for name in self.names])
 
     def residuals(self, values: Real) -> Real:
-        """Give what the model leaves of all records, in units of their noise; parameter values in SI."""
+        """Return what the model leaves of all records, in units of their noise; parameter values in SI."""
         sensors = self.task.sensors
         rows = sensor_rows(sensors, self.names)
         left = []

@@ -47,19 +47,19 @@ class PlainSteppedFit:
         return len(self.task.names) + 18 * len(self.task.decays)
 
     def start(self, away: float) -> Real:
-        """Give a start away from what our fit found by a part: parameters as their logarithms."""
+        """Return a start away from what our fit found by a part: parameters as their logarithms."""
         logs = np.log(np.array(list(self.task.found.parameters.values()))) + away
         return np.concatenate([logs, self.task.found.states.ravel()])
 
     def residual(self, unknown: Real) -> Real:
-        """Give measured minus modelled over the noise, of all drops, one after the other."""
+        """Return measured minus modelled over the noise, of all drops, one after the other."""
         count = len(self.task.names)
         values = np.exp(unknown[:count])
         starts = unknown[count:].reshape(len(self.task.decays), 18)
         return np.concatenate([self.of_drop(values, start, i) for i, start in enumerate(starts)])
 
     def of_drop(self, values: Real, start: Real, drop: int) -> Real:
-        """Give the same of one drop."""
+        """Return the same of one drop."""
         decay = self.task.decays[drop]
         model = self._models[decay.load]
         names = self.task.names
@@ -89,7 +89,7 @@ class PlainSteppedFit:
         return scaled
 
     def jacobian(self, unknown: Real) -> Real:
-        """Give its derivatives by differences; what one drop's start does to another is known to be nothing."""
+        """Return its derivatives by differences; what one drop's start does to another is known to be nothing."""
         count, size = len(self.task.names), len(self.residual(unknown)) // len(self.task.decays)
         here = self.residual(unknown)
         found = np.zeros((len(here), self.unknown))

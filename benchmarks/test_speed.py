@@ -31,7 +31,7 @@ def task() -> Task:
 
 
 def exponentials(task: Task) -> np.ndarray[tuple[int, ...], np.dtype[np.complex128]]:
-    """Give the fourteen exponentials of the empty vehicle, shape (time, 14)."""
+    """Return the fourteen exponentials of the empty vehicle, shape (time, 14)."""
     poles = np.linalg.eigvals(TABLE_1_CAR.matrices().state)
     return np.exp(np.arange(task.decays[0].samples)[:, None] / task.decays[0].rate * poles)
 

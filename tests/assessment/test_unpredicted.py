@@ -29,7 +29,7 @@ def judged(made: Campaign, contradicting: int = 0) -> Verdict:
     drops = cross_validate_drops(optimum, fit, decays, channels, motions)
     return decide_verdict(
         fit,
-        estimate_model_error(fit.residual_moments, decays),
+        estimate_model_error(optimum),
         to_estimates(fit, choice.known),
         channels,
         (),

@@ -121,11 +121,13 @@ def test_scores_of_forces_need_no_steps(
         candidates={extra: [(name,) for name in names] for extra, names in brought.items()},
     )
     assert min(by_modes["friction"][0], by_modes["rebound"][0]) > 50
-    # A motion that decays fast is followed in parts: with the same scores, to rounding.
-    monkeypatch.setattr("sprung.estimation.nonlinear_scores._LARGEST_POWER", 2.0)
-    in_parts = score_nonlinear_terms(found, larger.nonlinear_models, values, brought)
-    for extra in extras:
-        assert in_parts[extra][0] == pytest.approx(by_modes[extra][0], rel=1e-7)
+    # A motion that decays fast is followed in parts, and long drops one by one: with the same scores, to rounding.
+    assert len({decay.samples for decay in theirs}) > 1
+    for limit, value in (("_LARGEST_POWER", 2.0), ("_LARGEST", 1)):
+        monkeypatch.setattr(f"sprung.estimation.nonlinear_scores.{limit}", value)
+        in_parts = score_nonlinear_terms(found, larger.nonlinear_models, values, brought)
+        for extra in extras:
+            assert in_parts[extra][0] == pytest.approx(by_modes[extra][0], rel=1e-7)
     for extra in extras:
         assert by_modes[extra][0] == pytest.approx(by_steps[extra], rel=0.15, abs=3)
 

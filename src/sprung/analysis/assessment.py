@@ -64,7 +64,7 @@ def assess(run: Analysis, progress: Progress) -> Analysis:
     looked_at = check_prepared(campaign, run.prepared._replace(decays=decays))
     clocks = clock_reports(optimum, fit, decays)
     estimates = to_estimates(fit, structure.known)
-    misfit = estimate_model_error(fit.residual_moments, decays)
+    misfit = estimate_model_error(optimum)
     fitted = optimum.fitted
     motions = body_motions(statistics, decays, fitted, campaign.sensors)
     validated = cross_validate_drops(optimum, fit, decays, channels, motions)

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.preprocess import FreeDecay, Moments, estimate_sensor_noise, pool_moments
+from sprung.estimation import FitResult
+from sprung.preprocess import pool_moments
 
 Real = NDArray[np.float64]
 
@@ -15,15 +14,13 @@ _SIGNIFICANT = 4.0
 """Standard errors by which an excess must be real before it counts."""
 
 
-def estimate_model_error(residuals: Moments, decays: Sequence[FreeDecay]) -> tuple[Real, Real]:
+def estimate_model_error(fit: FitResult) -> tuple[Real, Real]:
     """Separate model error from noise in the residuals.
 
     Parameters
     ----------
-    residuals
-        Of a fit, from `pool_moments`.
-    decays
-        What was fitted.
+    fit
+        The fit.
 
     Returns
     -------
@@ -39,9 +36,9 @@ def estimate_model_error(residuals: Moments, decays: Sequence[FreeDecay]) -> tup
     So model error shows in two ways: as covariance between neighbouring residuals beyond that at rest, and as more
     variance than at rest. Each counts where it exceeds its sampling error, and the larger of the two is taken.
     """
-    variance, neighbour, samples = residuals
-    signal, _, _ = pool_moments(decay.values - decay.values.mean(axis=1, keepdims=True) for decay in decays)
-    noise = estimate_sensor_noise(decays, residuals)
+    variance, neighbour, samples = fit.residual_moments
+    signal, _, _ = pool_moments(decay.values - decay.values.mean(axis=1, keepdims=True) for decay in fit.decays)
+    noise = fit.sensor_noise
     known = noise.samples > 0
 
     # A sensor whose noise is below its resolution may show none at rest; in motion its steps make an error that is coloured

@@ -16,7 +16,7 @@ from sprung.estimation.estimates import (
     to_estimates,
     unidentifiable_combinations,
 )
-from sprung.estimation.fit_result import FitResult
+from sprung.estimation.fit_result import FitResult, expected_ends
 from sprung.estimation.linear_fit import NEAR, STARTS, escape_local_optimum, fit_linear, weigh_statements
 from sprung.estimation.linear_scores import score_linear_term, score_linear_terms
 from sprung.estimation.modes import UNNAMED, ModeEstimate, mode_estimates
@@ -40,7 +40,7 @@ from sprung.estimation.starts import (
     usual_rubber,
     usual_vehicle,
 )
-from sprung.estimation.statements import statements_of
+from sprung.estimation.statements import readout_of, statements_of
 from sprung.estimation.statistics import FitStatistics, Inflater, fit_jointly, uncertainty_of
 from sprung.estimation.subspace import canonical_basis
 
@@ -83,6 +83,7 @@ __all__ = [
     "escape_local_optimum",
     "estimate_of",
     "estimate_quantity",
+    "expected_ends",
     "fit_from_contact",
     "fit_jointly",
     "fit_linear",
@@ -95,6 +96,7 @@ __all__ = [
     "predictions",
     "profiled",
     "rates_at_motion_ratios",
+    "readout_of",
     "scale_of",
     "score_added",
     "score_linear_term",

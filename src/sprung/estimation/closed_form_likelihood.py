@@ -163,7 +163,7 @@ class ClosedFormAt:
         found: dict[int, Real] = {}
         for projected in self._projected:
             positions = projected.sums.batch.positions.tolist()
-            found |= dict(zip(positions, projected.fitted(self.modes.poles), strict=True))
+            found |= dict(zip(positions, projected.fitted(), strict=True))
         return tuple(found[position] for position in range(len(found)))
 
     @cached_property
@@ -184,11 +184,14 @@ class ClosedFormAt:
         load, step = self._load(drop)
         poles, shapes = self.modes.poles[load], self.modes.right[load]
         amplitudes = self.modes.left[load] @ self.states[drop]
+        batch, group = self.group_of(drop)
+        waves = self.sums[batch].waves[group]
         # A pole and its conjugate add the same real part twice.
         upper = poles.imag >= 0
         coefficients = shapes[:, upper] * (amplitudes[upper] * np.where(poles[upper].imag > 0, 2.0, 1.0))
         motion = np.empty((len(shapes), before + after))
-        motion[:, before:] = real_product(coefficients, exponentials(poles[upper] * step, after))
+        within = waves[:after] if after <= len(waves) else exponentials(poles[upper] * step, after)
+        motion[:, before:] = real_product(coefficients, within)
         powers = turns(np.outer(np.arange(-before, 0) * step, poles[upper]))
         motion[:, :before] = real_product(coefficients, powers)
         return motion
@@ -253,13 +256,15 @@ class ClosedFormAt:
         sensors = self.objective.sensors
         return sensors.of_accelerations(sensors.at(self.values))
 
-    def differentiate_response(self, forces: Complex) -> Complex:
+    def differentiate_response(self, forces: Complex, direct: Complex | float = 0.0) -> Complex:
         """Return the derivatives of the readings by changes of the equations of motion.
 
         Parameters
         ----------
         forces
             (dM λ² + dC λ + dK) v of every mode v, SI, shape (load, coordinate, change, mode).
+        direct
+            What the sensors read in every mode of what else a change moves, SI, shape (load, channel, change, mode).
 
         Returns
         -------
@@ -268,7 +273,7 @@ class ClosedFormAt:
         """
         objective = self.objective
         _, readings = differentiate_response(
-            objective.side_by_side, objective.sensors, self.values, self.modes, forces, objective.span
+            objective.side_by_side, objective.sensors, self.values, self.modes, forces, objective.span, direct
         )
         return readings
 
@@ -289,11 +294,15 @@ class ClosedFormAt:
         both = [np.ascontiguousarray(np.concatenate([own, added], axis=2)) for own, added in pairs]
         return self._gradient(both), self._information(both)
 
+    def group_of(self, drop: int) -> tuple[int, int]:
+        """Return batch and group of a drop, by its position: drops of one group share their modes."""
+        return next(
+            (i, group) for i, batch in enumerate(self.objective.batches) if (group := batch.find(drop)) is not None
+        )
+
     def response_of(self, drop: int) -> tuple[Complex, Complex, Complex, Complex]:
         """Return the poles, left eigenvectors, shapes and derivatives (τ per sample) of one drop, by its position."""
         load, _ = self._load(drop)
-        batch, group = next(
-            (i, group) for i, batch in enumerate(self.objective.batches) if (group := batch.find(drop)) is not None
-        )
+        batch, group = self.group_of(drop)
         modes = self.modes
         return modes.poles[load], modes.left[load], modes.shapes[load], self._derivatives[batch][group]

@@ -133,8 +133,9 @@ def fit_linear(
         return _fit_from(problem, values, enough, most)
     names = next(iter(models.values())).names
     size = VehicleSize.of(known, sensors, layout_of(names))
-    vehicles = [vehicle | nuisance for vehicle in start_grid(size, known, "m_e" in names)]
-    problem = problem_of(objective, known, vehicles[0])
+    grid = (vehicle | nuisance for vehicle in start_grid(size, known, "m_e" in names))
+    typical = next(grid)
+    problem = problem_of(objective, known, typical)
     coordinates = problem.priors.coordinates
     direct = objective.estimate_start(sensors, size, nuisance)
     ends: list[Maximum[Iterate]] = []
@@ -145,8 +146,8 @@ def fit_linear(
         fit = _best(problem, ends, enough)
         if len(ends) == starts or (fit.converged and _leaves_white_noise(fit) and _is_determined(fit)):
             return fit
-    if guess:
-        vehicles.insert(0, _completed(guess, {**vehicles[0], **(direct or {})}))
+    guesses = [_completed(guess, {**typical, **(direct or {})})] if guess else []
+    vehicles = [*guesses, typical, *grid]
     progress(Step(f"rating {len(vehicles)} usual vehicles as starts"))
     more = [coordinates.from_parameters(vehicle) for vehicle in vehicles]
     order = np.argsort(_costs_as_they_are(problem, objective, more), kind="stable")[: starts - len(ends)]

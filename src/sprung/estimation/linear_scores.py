@@ -7,15 +7,16 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.estimation.eliminated_coordinates import eliminate_coordinates
 from sprung.estimation.fit_result import FitResult
 from sprung.estimation.joint_objective import linear_objective
 from sprung.estimation.linear_fit import problem_of
 from sprung.estimation.priors import Coordinates
 from sprung.estimation.problem import Iterate
-from sprung.estimation.score_test import score_added, score_test
+from sprung.estimation.score_test import ScoreTest, score_added, score_test
 from sprung.estimation.statements import readout_of, statements_of
 from sprung.uncertainty import KnownValue
-from sprung.vehicle import LinearModel, Sensor, separate_track_names
+from sprung.vehicle import LinearModel, Readout, Sensor, parameter_of, separate_track_names
 
 Real = NDArray[np.float64]
 
@@ -26,51 +27,71 @@ Score = tuple[float, dict[str, float]]
 def score_linear_terms(
     fit: FitResult,
     models: Mapping[str, LinearModel],
-    values: Mapping[str, float],
-    candidates: Mapping[str, Mapping[str, float]],
-) -> dict[str, Score] | None:
+    sensors: Readout,
+    ways: Sequence[tuple[Mapping[str, float], Mapping[str, Sequence[str]]]],
+) -> list[dict[str, Score]] | None:
     """Return what terms of M, C and K would gain in a fitted linear vehicle, by :term:`score tests <score test>`.
+
+    All of them follow from one evaluation of the fitted model. Of coordinates that it has not, only the motion is considered
+    that the others force on them; see `eliminate_coordinates`.
 
     Parameters
     ----------
     fit
         Of the linear vehicle.
     models
-        Equations of motion by load name with all the terms, over the same coordinates.
-    values
-        Their parameters where they equal the fitted ones, SI, by name.
-    candidates
-        By name the parameters that each term brings, with their values there, SI; names of half-distances that springs and
-        dampers share stand for both.
+        Equations of motion by load name with all the terms.
+    sensors
+        The sensors over their parameters.
+    ways
+        Several ways in which these models equal the fitted one, or nearly so: their parameters, SI, by name, and by term the
+        names of the parameters that it brings; a half-distance that springs and dampers share stands for both.
 
     Returns
     -------
-    dict or None
-        By candidate: the gain in twice the log-likelihood, and the estimates of its parameters, SI, by name. None where modal
-        coordinates do not exist.
+    list of dict or None
+        For each of the ways, by term: the gain in twice the log-likelihood, and the estimates of its parameters, SI, by name.
+        None where modal coordinates do not exist.
     """
     at = fit.iterate.at.modal
     if at is None:
         return None
-    brought = {name: value for parameters in candidates.values() for name, value in parameters.items()}
     larger = LinearModel.stack([models[load] for load in at.loads])
-    changed = np.array([_changed(name, larger.names) for name in brought])
-    slopes = np.concatenate(larger.slopes(np.array([values[name] for name in larger.names])), axis=-1)
-    modes = at.modes
-    motions = np.concatenate([modes.accelerations, modes.velocities, modes.displacements], axis=-2)
-    forces = np.moveaxis(np.tensordot(changed, slopes, 1) @ motions, 0, -2)
-    gradient, information = at.with_changes(at.differentiate_response(forces))
+    brought = [list(dict.fromkeys(name for names in terms.values() for name in names)) for _, terms in ways]
+    readings = []
+    for (values, _), names in zip(ways, brought, strict=True):
+        numbers = np.array([values[name] for name in larger.names])
+        changed = np.array([_changed(name, larger.names) for name in names])
+        forces, added = eliminate_coordinates(at.modes, fit.names, larger, numbers, changed)
+        read = np.tensordot(sensors.of_accelerations(sensors.rows.at(numbers)), added, axes=(1, 1))
+        readings.append(at.differentiate_response(forces, np.swapaxes(read, 0, 1)))
+    gradient, information = at.with_changes(np.concatenate(readings, axis=2))
+    # Some parameters are about zero in every vehicle, as they are here.
+    stds = np.array([parameter_of(name).usual_std for names in brought for name in names])
+    at_unknown = len(fit.names) + np.flatnonzero(stds)
+    information[at_unknown, at_unknown] += stds[stds > 0] ** -2
     test = score_added(fit, gradient, information)
-    coordinates = Coordinates.scaled_by(tuple(brought), {**values, **brought})
-    u = coordinates.from_parameters(brought)
+    found, end = [], 0
+    for (values, terms), names in zip(ways, brought, strict=True):
+        begin, end = end, end + len(names)
+        found.append(_scores(test, range(begin, end), names, values, terms))
+    return found
+
+
+def _scores(
+    test: ScoreTest, columns: range, names: list[str], values: Mapping[str, float], terms: Mapping[str, Sequence[str]]
+) -> dict[str, Score]:
+    """Return the scores of terms, whose parameters are the unknowns of a test in some columns."""
+    here = {name: values[name if name in values else separate_track_names(name)[0]] for name in names}
+    coordinates = Coordinates.scaled_by(tuple(names), {**values, **here})
+    u = coordinates.from_parameters(here)
     scores = {}
-    for term, parameters in candidates.items():
-        own = [list(brought).index(name) for name in parameters]
-        estimates = coordinates.extrapolated(u, test.joint_values(own) / coordinates.derivatives(u))
-        scores[term] = (
-            test.gain(own),
-            {name: float(estimates[i]) for name, i in zip(parameters, own, strict=True)},
-        )
+    for term, brought in terms.items():
+        own = [columns[names.index(name)] for name in brought]
+        step = test.joint_values(own)
+        estimates = coordinates.extrapolated(u, step[columns.start : columns.stop] / coordinates.derivatives(u))
+        named = dict(zip(names, estimates.tolist(), strict=True))
+        scores[term] = (float(test.score @ step), {name: named[name] for name in brought})
     return scores
 
 

@@ -180,7 +180,13 @@ def differentiate_modes(
 
 
 def differentiate_response(
-    model: LinearModel, sensors: Readout, values: Real, modes: ModalSolution, forces: Complex, span: float
+    model: LinearModel,
+    sensors: Readout,
+    values: Real,
+    modes: ModalSolution,
+    forces: Complex,
+    span: float,
+    direct: Complex | float = 0.0,
 ) -> tuple[Complex, Complex]:
     """Return the derivatives of poles and readings by changes of the equations of motion.
 
@@ -190,6 +196,8 @@ def differentiate_response(
         As for `differentiate_modes`.
     forces
         (dM λ² + dC λ + dK) v of every mode v, for several changes; shape (..., coordinate, change, mode).
+    direct
+        What the sensors read in every mode of what else a change moves, SI, shape (..., channel, change, mode).
 
     Returns
     -------
@@ -202,7 +210,7 @@ def differentiate_response(
     left = modes.left[..., highest_derivatives(n, model.massive)]
     both = np.concatenate([left, S], axis=-2) @ -np.linalg.inv(model.matrices(values).leading)
     changed = (both @ forces.reshape(*lead, n, -1)).reshape(*lead, m + channels, changes, m)
-    D, of_sensors = changed[..., :m, :, :], changed[..., m:, :, :]
+    D, of_sensors = changed[..., :m, :, :], changed[..., m:, :, :] + direct
 
     difference = modes.poles[..., None, :] - modes.poles[..., :, None]
     close = np.abs(difference) * span < _CLOSE

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.estimation.fit_result import FitResult
-from sprung.estimation.problem import identifiable_equations
+from sprung.estimation.problem import least_information
 
 Real = NDArray[np.float64]
 
@@ -68,31 +68,45 @@ def predictions(fit: FitResult) -> tuple[Prediction, ...]:
     information, gradient, null_space = problem.system(optimum)
     gradients, informations = problem.by_drop(optimum)
     fitted = fit.residual_sums @ fit.weights
-    found = []
-    for drop, (own, own_information) in enumerate(zip(gradients, informations, strict=True)):
-        others = identifiable_equations(information - own_information, gradient - own, null_space)
-        move, _ = others.step()
-        move *= min(1.0, _LONGEST_STEP / np.abs(move).max(initial=1e-300))
-        along = null_space.T @ move
-        squares = float(fitted[drop] - 2 * own @ along + along @ own_information @ along)
-        if squares > (1 + _SLIGHT) * fitted[drop]:
-            values = problem.priors.coordinates.values(problem.priors.project(optimum.u + move))
-            alone = optimum.at.moved(values).of_drop(drop).with_optimal_states()
-            squares = float(alone.residual_sums[0] @ alone.weights)
-        subspace = null_space.T @ others.directions
-        within = subspace.T @ own_information @ subspace
-        spread = np.linalg.solve(others.information, within)
-        eigenvalues = np.maximum(np.linalg.eigvals(spread).real, 0.0)
-        growth = eigenvalues + eigenvalues / (1 + eigenvalues)
-        by_chance = float(growth.sum()), float(np.sqrt(2 * np.sum(growth**2)))
-        distance = _distance(subspace.T @ (own - own_information @ along), within, spread)
-        found.append(Prediction(float(fitted[drop]), max(squares, float(fitted[drop])), by_chance, distance))
-    return tuple(found)
+    eigenvalues, vectors = np.linalg.eigh(information - informations)
+    # Only the directions that the others determine, all drops in one array: in the others there is no information.
+    identifiable = eigenvalues >= np.array([least_information(own) for own in eigenvalues])[:, None]
+    kept = vectors * identifiable[:, None]
+    variances = np.where(identifiable, 1 / np.where(identifiable, eigenvalues, 1.0), 0.0)
+    along = _times(kept, variances * _times(_transposed(kept), gradient - gradients))
+    along *= np.minimum(1.0, _LONGEST_STEP / np.abs(along @ null_space.T).max(axis=1, initial=1e-300))[:, None]
+    turned = _times(informations, along)
+    squares = fitted - 2 * np.sum(gradients * along, axis=1) + np.sum(along * turned, axis=1)
+    for drop in np.flatnonzero(squares > (1 + _SLIGHT) * fitted).tolist():
+        values = problem.priors.coordinates.values(problem.priors.project(optimum.u + null_space @ along[drop]))
+        alone = optimum.at.moved(values).of_drop(drop).with_optimal_states()
+        squares[drop] = float(alone.residual_sums[0] @ alone.weights)
+    within, scales = _transposed(kept) @ informations @ kept, np.sqrt(variances)
+    growth = np.maximum(np.linalg.eigvalsh(scales[:, :, None] * within * scales[:, None]), 0.0)
+    growth += growth / (1 + growth)
+    covariances = within + within @ (variances[:, :, None] * within)
+    distances, directions = _distances(_times(_transposed(kept), gradients - turned), covariances)
+    columns = fitted, np.maximum(squares, fitted), growth.sum(axis=1), np.sqrt(2 * np.sum(growth**2, axis=1)), distances
+    return tuple(
+        Prediction(own, predicted, (mean, deviation), (distance, count))
+        for own, predicted, mean, deviation, distance, count in zip(
+            *(column.tolist() for column in (*columns, directions)), strict=True
+        )
+    )
 
 
-def _distance(score: Real, own: Real, spread: Real) -> tuple[float, int]:
-    """Weigh the gradient of a drop at the optimum of the others by its own covariance there."""
-    covariance = own + own @ spread
-    eigenvalues, vectors = np.linalg.eigh((covariance + covariance.T) / 2)
-    kept = eigenvalues > max(1.0, 1e-9 * float(eigenvalues.max(initial=0.0)))
-    return float(np.sum((vectors.T @ score)[kept] ** 2 / eigenvalues[kept])), int(kept.sum())
+def _distances(scores: Real, covariances: Real) -> tuple[Real, NDArray[np.int64]]:
+    """Weigh the gradient of each drop at the optimum of the others by its own covariance there; and count the directions."""
+    eigenvalues, vectors = np.linalg.eigh((covariances + _transposed(covariances)) / 2)
+    kept = eigenvalues > np.maximum(1.0, 1e-9 * eigenvalues.max(axis=1, initial=0.0, keepdims=True))
+    parts = _times(_transposed(vectors), scores) ** 2 / np.where(kept, eigenvalues, np.inf)
+    return parts.sum(axis=1), kept.sum(axis=1)
+
+
+def _transposed(matrices: Real) -> Real:
+    return np.swapaxes(matrices, -1, -2)
+
+
+def _times(matrices: Real, vectors: Real) -> Real:
+    """Multiply each matrix by a vector of its own, shapes (drop, row, column) and (drop, column)."""
+    return np.asarray((matrices @ vectors[:, :, None])[:, :, 0])

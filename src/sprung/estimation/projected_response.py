@@ -93,6 +93,20 @@ class ExponentialSums:
         return cls(batch, values, poles, shapes, prior, gram, batch.correlate(exponent))
 
     @cached_property
+    def waves(self) -> list[Complex]:
+        """e^{λk} of one pole of each pair over the longest record of each group, shape (time, upper mode)."""
+        batch = self.batch
+        # Where every record is a group, as its clocks differ, many have the same poles and steps.
+        kinds = list(zip(batch.load.tolist(), batch.step.tolist(), strict=True))
+        longest, made = dict[tuple[int, float], int](), dict[tuple[int, float], Complex]()
+        for group, kind in enumerate(kinds):
+            longest[kind] = max(longest.get(kind, 0), int(batch.samples[batch.members(group)].max()))
+        for poles, kind in zip(self.poles, kinds, strict=True):
+            if kind not in made:
+                made[kind] = exponentials(poles[poles.imag >= 0] * kind[1], longest[kind])
+        return [made[kind] for kind in kinds]
+
+    @cached_property
     def expected_delays(self) -> Real:
         """Delay of each logger as known beforehand, s, shape (record, logger)."""
         batch = self.batch
@@ -342,16 +356,16 @@ class ProjectedResponse:
         total: Real = np.sum(parts, axis=(0, 1))
         return total
 
-    def fitted(self, poles: Complex) -> Iterator[Real]:
-        """Modelled records, their means subtracted, from poles of each load; each of shape (channel, time)."""
+    def fitted(self) -> Iterator[Real]:
+        """Modelled records, their means subtracted; each of shape (channel, time)."""
         batch = self.sums.batch
-        for group, (load, step) in enumerate(zip(batch.load, batch.step, strict=True)):
+        for group, (poles, waves) in enumerate(zip(self.sums.poles, self.sums.waves, strict=True)):
             members = batch.members(group)
             # A pole and its conjugate add the same real part twice.
-            upper = poles[load].imag >= 0
-            twice = np.where(poles[load].imag > 0, 2.0, 1.0)[upper]
+            upper = poles.imag >= 0
+            twice = np.where(poles.imag > 0, 2.0, 1.0)[upper]
             # The real part of a product of complex numbers is that of pairs of real ones, one of them conjugated.
-            motion = exponentials(poles[load][upper] * step, int(batch.samples[members].max())).view(float)
+            motion = waves.view(float)
             coefficients = self._coefficients[members][..., upper] * twice
             for own, samples in zip(coefficients, batch.samples[members], strict=True):
                 record = np.ascontiguousarray(own.conj()).view(float) @ motion[:samples].T

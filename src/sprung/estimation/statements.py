@@ -33,5 +33,19 @@ def statements_of(
 
 
 def readout_of(sensors: Sequence[Sensor], names: Sequence[str], known: Mapping[str, KnownValue]) -> Readout:
-    """Return what sensors read, everything uncertain of them as further parameters; arguments as for `statements_of`."""
+    """Return what sensors read, everything uncertain of them as further parameters.
+
+    Parameters
+    ----------
+    sensors
+        With the uncertainties of their gains, places and delays.
+    names
+        Parameters of the model.
+    known
+        What is stated of the vehicle and of loads, SI.
+
+    Returns
+    -------
+    Readout
+    """
     return Readout.with_unknowns(sensors, names, VehicleSize.of(known, sensors, layout_of(names)).wheelbase)

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from sprung.errors import Fault
 from sprung.estimation import FitResult, score_added
 from sprung.faults.fault_scores import FaultScore
-from sprung.preprocess import FreeDecay, differentiate_by_cutoff, estimate_sensor_noise
+from sprung.preprocess import FreeDecay, differentiate_by_cutoff
 from sprung.uncertainty import round_by_uncertainty
 from sprung.vehicle import Sensor
 
@@ -193,7 +193,7 @@ def score_corners(decays: Sequence[FreeDecay], optimum: FitResult, sensors: Sequ
 
 def _level_errors(decays: Sequence[FreeDecay], optimum: FitResult) -> Real:
     """Return the standard uncertainty of a level at rest of each channel, m/s², shape (channel,); 0 without a rest."""
-    noise = estimate_sensor_noise(decays, optimum.residual_moments)
+    noise = optimum.sensor_noise
     rested = np.mean([decay.rest.noise.shape[1] for decay in decays])
     errors: Real = np.sqrt(noise.variance * noise.per_independent_mean / max(float(rested), 1.0))
     return errors

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.estimation import FitResult
-from sprung.preprocess import FreeDecay, SensorNoise, estimate_sensor_noise
+from sprung.preprocess import FreeDecay, SensorNoise
 from sprung.selection import required_gain
 from sprung.vehicle import is_of_sensor
 
@@ -149,8 +149,8 @@ def reference_noise(decays: Sequence[FreeDecay], optimum: FitResult) -> SensorNo
     SensorNoise
     """
     samples = np.maximum(np.sum([decay.usable * decay.samples for decay in decays], axis=0), 1)
-    signal = np.sqrt(np.sum([_energy(decay) for decay in decays], axis=0) / samples)
-    noise = estimate_sensor_noise(decays, optimum.residual_moments)
+    signal = np.sqrt(optimum.problem.objective.energy / samples)
+    noise = optimum.sensor_noise
     few = noise.samples < _FEW
     variance = noise.variance
     if few.any():
@@ -179,7 +179,3 @@ def is_explained(decays: Sequence[FreeDecay], optimum: FitResult) -> bool:
     return residual_table([decay.file for decay in decays], decays, optimum).is_explained(
         reference_noise(decays, optimum)
     )
-
-
-def _energy(decay: FreeDecay) -> Real:
-    return np.where(decay.usable, decay.samples * decay.values.var(axis=1), 0.0)

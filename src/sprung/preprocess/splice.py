@@ -10,13 +10,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sprung.campaign import Recording
 from sprung.errors import Fault
+from sprung.uncertainty import KnownValue
 
 Real = NDArray[np.float64]
 
@@ -46,13 +46,6 @@ _SURE = 5.0
 
 _LATEST = 0.05
 """s: no filter of a logger delays by more."""
-
-
-class Delay(NamedTuple):
-    """Delay of first parts against the rest, and its standard uncertainty, s."""
-
-    value: float
-    std: float
 
 
 def join_splices(recordings: Sequence[Recording]) -> list[Recording]:
@@ -130,17 +123,17 @@ def find_splice(values: Real, rate: float) -> int | None:
     return int(place - near + (crossed[0] + 2 if rises else crossed[0]))
 
 
-def _estimate_delay(spliced: Sequence[tuple[Recording, int]]) -> Delay:
-    """Estimate the delay of the first parts of all recordings from the jumps of their channels."""
+def _estimate_delay(spliced: Sequence[tuple[Recording, int]]) -> KnownValue:
+    """Estimate the delay of the first parts of all recordings against the rest, s, from the jumps of their channels."""
     rates, jumps = (
         np.array([pair for one, at in spliced for pair in zip(*_jump(one, at), strict=True)]).reshape(-1, 2).T
     )
     energy = float(rates @ rates)
     if energy == 0:
-        return Delay(0.0, np.inf)
+        return KnownValue(0.0, np.inf)
     delay = float(rates @ jumps) / energy
     left = jumps - delay * rates
-    return Delay(delay, float(np.sqrt(left @ left / max(len(left) - 1, 1) / energy)))
+    return KnownValue(delay, float(np.sqrt(left @ left / max(len(left) - 1, 1) / energy)))
 
 
 def _jump(recording: Recording, at: int) -> tuple[Real, Real]:
@@ -155,7 +148,7 @@ def _jump(recording: Recording, at: int) -> tuple[Real, Real]:
     return (first[1] + second[1]) / 2 / span, (second[0] - first[0]) / span
 
 
-def _joined(recording: Recording, at: int, delay: Delay) -> Recording:
+def _joined(recording: Recording, at: int, delay: KnownValue) -> Recording:
     """Return a recording with its first part advanced by a delay."""
     moment = recording.start + at / recording.rate
     what = f"until {moment:.3f} s all channels passed another filter than after it"

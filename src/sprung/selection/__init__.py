@@ -13,13 +13,12 @@ from sprung.selection.from_ordinary_vehicle import select_flexible_body
 from sprung.selection.linear_terms import ENGINE, SEPARATE_TRACKS, STARTED_LATER
 from sprung.selection.model_term import ModelTerm
 from sprung.selection.nonlinear import select_nonlinear_terms
-from sprung.selection.scoring import score_terms
+from sprung.selection.scoring import WORTH_A_FIT, score_terms
 from sprung.selection.search import ModelSearch, SelectionStep
 from sprung.selection.starts import fit_structure
 from sprung.selection.stepwise import select_linear_terms, try_term
 from sprung.selection.structure import ModelStructure, choose_structure
 from sprung.selection.term_fits import (
-    WORTH_A_FIT,
     fit_forced_terms,
     fit_requested_terms,
     fit_term,

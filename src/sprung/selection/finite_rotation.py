@@ -11,8 +11,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
-from sprung.estimation import NEAR
+from sprung.estimation import NEAR, FitResult, expected_ends
 from sprung.preprocess import FreeDecay
 from sprung.selection.search import ModelSearch
 from sprung.selection.starts import fit_structure, start_values, thinned
@@ -20,6 +21,8 @@ from sprung.selection.stepwise import select_linear_terms
 from sprung.selection.structure import ModelStructure
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import EMPTY, FULL, Heights, body_sinking, second_order_readings
+
+Real = NDArray[np.float64]
 
 _WHEEL_HEIGHT = 0.32
 """Height of wheel centres above the ground that is assumed where it is not stated, m: radii of loaded tyres of cars and vans
@@ -36,6 +39,9 @@ all samples up to which that saves anything."""
 _FIRST_ITERATIONS = 2
 """Iterations after which there has to be a gain: the optimum moves by a few standard errors only."""
 
+
+_NEAR_BY = 100.0
+"""Expected gain in twice the log-likelihood, the distance in standard errors squared, up to which that is quadratic."""
 
 _Assumption = tuple[bool, bool]
 """Of a vehicle under a load: whether loads are level with the centre of gravity, where no heights are stated; and whether the
@@ -89,14 +95,21 @@ def select_finite_rotation(search: ModelSearch, plain: ModelStructure) -> ModelS
 
 
 def _loses_much(search: ModelSearch, assumption: _Assumption) -> bool:
-    """Whether the correction loses so much in a part of the samples that it cannot gain in all of them."""
+    """Whether the correction loses so much in a part of the samples that it cannot gain in all of them.
+
+    As far as the likelihood is quadratic, what the parameters may gain back follows without any fit.
+    """
     thin, part = thinned(search.decays, _RATE, np.inf)
     if part > _PART:
         return False
-    before = replace(search, decays=thin).refit(search.structure, most=0)
-    after = _corrected(before, thin, assumption, passes=1, most=_FIRST_ITERATIONS)
-    expected = [2 * one.fit.loglikelihood + one.fit.remaining_gain for one in (before, after)]
-    return expected[1] - expected[0] < -search.required_of_switch
+    fit, structure = search.fit, _with_geometry(search.structure, search.fit.parameters, assumption)
+    motions = [
+        fit.motion(drop, 0, decay.samples)[:, :: round(decay.rate / one.rate)]
+        for drop, (decay, one) in enumerate(zip(search.decays, thin, strict=True))
+    ]
+    corrected = _without_second_order(structure, fit, thin, motions)
+    (before, _), (after, gain) = expected_ends(fit, (thin, corrected))
+    return gain < _NEAR_BY and after - before < -search.required_of_switch
 
 
 def _corrected(
@@ -117,28 +130,36 @@ def _corrected(
     most
         Largest number of iterations of each fit.
     """
-    loads = {load.name: load for load in search.structure.campaign.loads}
-    sensors = search.structure.campaign.sensors
     for _ in range(passes):
         fit, structure = search.fit, _with_geometry(search.structure, search.fit.parameters, assumption)
-        decays = list(recorded)
-        for load, rate in dict.fromkeys((decay.load, decay.rate) for decay in recorded):
-            drops = [drop for drop, decay in enumerate(recorded) if (decay.load, decay.rate) == (load, rate)]
-            readings = second_order_readings(
-                structure.linear_models[load],
-                structure.tracks,
-                structure.heights_of(load),
-                loads[load],
-                sensors,
-                fit.values[: len(structure.names)],  # without what was found of the sensors
-                [fit.motion(drop, 0, recorded[drop].samples) for drop in drops],
-                1 / rate,
-            )
-            for drop, reading in zip(drops, readings, strict=True):
-                decays[drop] = replace(recorded[drop], values=recorded[drop].values - reading)
+        motions = [fit.motion(drop, 0, decay.samples) for drop, decay in enumerate(recorded)]
+        decays = _without_second_order(structure, fit, recorded, motions)
         fitted = fit_structure(structure, decays, fit, NEAR, search.progress, most=most)
         search = replace(search, structure=structure, fit=fitted, decays=tuple(decays))
     return search
+
+
+def _without_second_order(
+    structure: ModelStructure, fit: FitResult, recorded: Sequence[FreeDecay], motions: Sequence[Real]
+) -> list[FreeDecay]:
+    """Subtract from decays what their motions, {X, Ẋ} of shape (state, time) each, add to them to second order."""
+    loads = {load.name: load for load in structure.campaign.loads}
+    decays = list(recorded)
+    for load, rate in dict.fromkeys((decay.load, decay.rate) for decay in recorded):
+        drops = [drop for drop, decay in enumerate(recorded) if (decay.load, decay.rate) == (load, rate)]
+        readings = second_order_readings(
+            structure.linear_models[load],
+            structure.tracks,
+            structure.heights_of(load),
+            loads[load],
+            structure.campaign.sensors,
+            fit.values[: len(structure.names)],  # without what was found of the sensors
+            [motions[drop] for drop in drops],
+            1 / rate,
+        )
+        for drop, reading in zip(drops, readings, strict=True):
+            decays[drop] = replace(recorded[drop], values=recorded[drop].values - reading)
+    return decays
 
 
 def _with_geometry(

@@ -5,13 +5,32 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from sprung.estimation import score_linear_term, score_linear_terms, score_nonlinear_terms, score_stepped_terms
+import numpy as np
+
+from sprung.estimation import (
+    readout_of,
+    score_linear_term,
+    score_linear_terms,
+    score_nonlinear_terms,
+    score_stepped_terms,
+)
 from sprung.preprocess import FreeDecay
 from sprung.selection.nonlinear_terms import BUMP_STOP
 from sprung.selection.search import ModelSearch
-from sprung.selection.starts import neutral_values, start_variants, states_by_coordinates, stop_gaps, thinned
+from sprung.selection.starts import (
+    neutral_values,
+    start_variants,
+    states_by_coordinates,
+    stop_gaps,
+    thinned,
+    usual_variants,
+)
 from sprung.selection.terms import TERMS
 from sprung.vehicle import separate_track_names
+
+WORTH_A_FIT = 4.0
+"""Factor on the expected gain of a linear term before it is compared with the required one: a score test understates the
+gain of terms that are far from neutral. After one step towards the term, only what is still expected counts so much."""
 
 _RATE, _DURATION = 250.0, 3.0
 """Hz and s of the thinned decays that are stepped for a score: enough for wheel hop and for all of a usual decay."""
@@ -50,34 +69,46 @@ def score_terms(search: ModelSearch, terms: Sequence[str]) -> tuple[ModelSearch,
 
 
 def _linear(search: ModelSearch, terms: Sequence[str]) -> tuple[ModelSearch, Scores]:
-    """Score linear terms: those beside the same coordinates in one evaluation, where modal coordinates exist."""
-    at_once, scores = (
-        _of_same_coordinates(search, [term for term in terms if not TERMS[term].adds_coordinates]),
-        Scores(),
-    )
+    """Score linear terms: all in one evaluation, and those of larger models that are worth a fit once more in their own."""
+    scores = _of_fitted_model(search, terms)
     for term in terms:
-        if term in at_once:
-            scores[term] = at_once[term]
-        else:
+        gain, _ = scores.get(term, (np.inf, 0.0))
+        if term not in scores or (TERMS[term].adds_coordinates and gain * WORTH_A_FIT > search.significant(term)):
             search, scores[term] = _of_larger_model(search, term)
-    return search, scores
+    return search, {term: scores[term] for term in terms}
 
 
-def _of_same_coordinates(search: ModelSearch, terms: Sequence[str]) -> Scores:
-    """Score linear terms that add no coordinate; empty where modal coordinates do not exist."""
+def _of_fitted_model(search: ModelSearch, terms: Sequence[str]) -> Scores:
+    """Score linear terms by what they would force on the fitted model; empty where modal coordinates do not exist.
+
+    Each term with its best start.
+    """
     if not terms:
         return {}
     larger, own = search.with_terms(terms), search.fit.parameters
-    values = {term: neutral_values(search.with_terms([term]), own) for term in terms}
-    candidates = {
-        term: {
-            name: values[term][name]
-            for name in TERMS[term].parameters(search.with_terms([term]).tracks, search.structure.layout)
-        }
-        for term in terms
-    }
-    tests = score_linear_terms(search.fit, larger.linear_models, neutral_values(larger, own), candidates) or {}
-    return {term: (gain, abs(TERMS[term].size(values[term] | estimates))) for term, (gain, estimates) in tests.items()}
+    brought = {term: TERMS[term].parameters(search.with_terms([term]).tracks, larger.layout) for term in terms}
+    variants = {term: usual_variants(term, larger, own) for term in terms}
+    neutral, ways = neutral_values(larger, own), []
+    for number in range(max(map(len, variants.values()))):
+        there = {term: ones[number] for term, ones in variants.items() if number < len(ones)}
+        values = {**neutral}
+        for term, variant in there.items():
+            undefined = TERMS[term].undefined
+            values |= {} if undefined is None else undefined(own, variant)
+        ways.append((values, {term: brought[term] for term in there}))
+    sensors = readout_of(larger.sensors, larger.names, larger.known)
+    scores = Scores()
+    for tests in score_linear_terms(search.fit, larger.linear_models, sensors, ways) or ():
+        for term, (gain, estimates) in tests.items():
+            if term not in scores or gain > scores[term][0]:
+                scores[term] = gain, abs(TERMS[term].size(neutral | own | estimates))
+    return scores
+
+
+def with_best_start(search: ModelSearch, term: str) -> ModelSearch:
+    """Return the search with the start of its structure from which a linear term gains most: the mounting of an engine, say."""
+    is_open = TERMS[term].adds_coordinates and not search.structure.is_nonlinear
+    return _of_larger_model(search, term)[0] if is_open else search
 
 
 def _of_larger_model(search: ModelSearch, term: str) -> tuple[ModelSearch, tuple[float, float]]:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from sprung.assessment import estimate_model_error
 from sprung.display import shown
 from sprung.estimation import NEAR, FitResult, wald_test
-from sprung.preprocess import FreeDecay, estimate_sensor_noise
+from sprung.preprocess import FreeDecay
 from sprung.progress import Progress, silent
 from sprung.selection.error_budget import LEAST_SHARE, MODEL_ERROR, OVERDISPERSED, UNEXPLAINED, required_gain
 from sprung.selection.linear_terms import SEPARATE_TRACKS
@@ -217,7 +217,7 @@ class ModelSearch:
 
         A vehicle may still swing on its blocks: what neighbouring samples share at rest is left out.
         """
-        noise = estimate_sensor_noise(self.decays, self.fit.residual_moments)
+        noise = self.fit.sensor_noise
         white = np.clip(noise.variance - noise.neighbour, 0.0, noise.variance)
         return np.where(noise.samples > 0, white + noise.added, 0.0)
 
@@ -243,7 +243,7 @@ class ModelSearch:
 
         In one channel alone it is its sensor's: whatever a vehicle does, more than one shows it.
         """
-        model_error, _ = estimate_model_error(self.fit.residual_moments, self.decays)
+        model_error, _ = estimate_model_error(self.fit)
         return float(np.sort(model_error)[-2:].min()) > UNEXPLAINED
 
     @property

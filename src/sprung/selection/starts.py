@@ -173,8 +173,8 @@ def stop_gaps(structure: ModelStructure, fit: FitResult, decays: Sequence[FreeDe
     return [part * largest for part in _STOP_GAPS] if largest > 0 else []
 
 
-def start_variants(term: str, structure: ModelStructure, own: Mapping[str, float]) -> list[ModelStructure]:
-    """Return the structures from which the fit of a term may begin: an engine may be mounted in several ways.
+def usual_variants(term: str, structure: ModelStructure, own: Mapping[str, float]) -> list[ModelStructure]:
+    """Return a structure with each of the starts that a term usually has: an engine may be mounted in several ways.
 
     A body may bend at several frequencies, and people sit at several places.
     """
@@ -184,10 +184,15 @@ def start_variants(term: str, structure: ModelStructure, own: Mapping[str, float
         return [replace(structure, seat_place=place) for place in _SEAT_PLACES]
     if term != ENGINE:
         return [structure]
-    variants = [
-        replace(structure, engine_frequency=frequency, engine_place=place)
-        for frequency, place in engine_mountings(own.get("a", 0.0) + own.get("b", 0.0))
-    ]
+    mountings = engine_mountings(own.get("a", 0.0) + own.get("b", 0.0))
+    return [replace(structure, engine_frequency=frequency, engine_place=place) for frequency, place in mountings]
+
+
+def start_variants(term: str, structure: ModelStructure, own: Mapping[str, float]) -> list[ModelStructure]:
+    """Return the structures with the usual starts of a term from which its fit may begin: all parts have mass there."""
+    variants = usual_variants(term, structure, own)
+    if term != ENGINE:
+        return variants
     # They differ in their values alone: one compilation of the equations of motion serves all.
     return [variant for variant in variants if has_positive_masses(structure.linear_models, start_values(variant, own))]
 

@@ -13,10 +13,9 @@ from dataclasses import replace
 from sprung.estimation import FitResult
 from sprung.selection.backward_elimination import leave_out_unneeded
 from sprung.selection.error_budget import MISFIT_LEFT_BY_ALL
-from sprung.selection.scoring import Scores, score_terms
+from sprung.selection.scoring import WORTH_A_FIT, Scores, score_terms
 from sprung.selection.search import ModelSearch
 from sprung.selection.term_fits import (
-    WORTH_A_FIT,
     begin_nonlinear_fit,
     fit_linear_term,
     fit_nonlinear_term,

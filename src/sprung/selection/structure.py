@@ -109,7 +109,7 @@ class ModelStructure:
         """Return the heights with the body as low as it rests under a load, by the load's name."""
         return self.heights._replace(sunk=self.sinking.get(load, 0.0))
 
-    @property
+    @cached_property
     def wheelbase(self) -> float:
         """Wheelbase over which the body twists and bends, m: the known one, or that of the sensors."""
         return VehicleSize.of(self.known, self.campaign.sensors, self.layout).wheelbase
@@ -125,7 +125,7 @@ class ModelStructure:
         height, sensors = self.heights.cg_height, self.campaign.sensors
         return sensors if height is None else tuple(sensor.at_height_above(height) for sensor in sensors)
 
-    @property
+    @cached_property
     def names(self) -> tuple[str, ...]:
         """The parameters: the vehicle's, and the masses of loads that are known with an uncertainty."""
         used = {drop.load for drop in self.campaign.drops}
@@ -159,10 +159,17 @@ class ModelStructure:
 
     def _elements(self, load: Load) -> tuple[Element, ...]:
         """Return the linear elements of the vehicle, as it stands under a load."""
-        heights, layout = self.heights_of(load.name), self.layout
-        elements = linear_elements(self.tracks, self.terms, heights, self.wheelbase, layout)
-        at_wheels = load.mass_at_wheels(self.wheelbase, layout)
-        return elements + stiffened_air_springs(at_wheels, self.tracks, self.terms, self.wheelbase, layout)
+        elements = self._elements_at[self.heights_of(load.name)]
+        at_wheels = load.mass_at_wheels(self.wheelbase, self.layout)
+        return elements + stiffened_air_springs(at_wheels, self.tracks, self.terms, self.wheelbase, self.layout)
+
+    @cached_property
+    def _elements_at(self) -> Mapping[Heights, tuple[Element, ...]]:
+        """The linear elements of the vehicle at each of the heights at which its loads let it stand."""
+        return {
+            heights: linear_elements(self.tracks, self.terms, heights, self.wheelbase, self.layout)
+            for heights in {self.heights_of(load.name) for load in self.campaign.loads}
+        }
 
     @property
     def is_nonlinear(self) -> bool:

@@ -15,14 +15,10 @@ from sprung.progress import Step
 from sprung.selection.error_budget import MISFIT_LEFT, MISFIT_LEFT_AT_FIRST
 from sprung.selection.linear_terms import ENGINE
 from sprung.selection.ordinary_vehicle import fit_from_ordinary_vehicle, is_ordinary
-from sprung.selection.scoring import score_terms
+from sprung.selection.scoring import WORTH_A_FIT, with_best_start
 from sprung.selection.search import ModelSearch
 from sprung.selection.starts import fit_structure, has_positive_masses, start_values
 from sprung.selection.structure import ModelStructure
-
-WORTH_A_FIT = 4.0
-"""Factor on the expected gain of a linear term before it is compared with the required one: a score test understates the
-gain of terms that are far from neutral. After one step towards the term, only what is still expected counts so much."""
 
 _STEPS_FROM_BELOW = 3
 """Iterations after which the gain of a term is expected whose first step ended below the fit without it."""
@@ -84,7 +80,7 @@ def fit_term(search: ModelSearch, term: str) -> ModelSearch:
     -------
     ModelSearch
     """
-    return fit_linear_term(score_terms(search, [term])[0], term)
+    return fit_linear_term(with_best_start(search, term), term)
 
 
 def take_first_step(search: ModelSearch, term: str) -> tuple[ModelSearch, float]:

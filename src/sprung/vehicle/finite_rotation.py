@@ -279,10 +279,13 @@ def _forced_rates(
     before, after = step * (np.exp(z) * (z - 1) + 1) / z**2, step * (np.exp(z) - 1 - z) / z**2
     states = np.zeros_like(modal)
     states[:, 1:] = before * modal[:, :-1] + after * modal[:, 1:]
-    for begin, end in pairwise([0, *ends, states.shape[1]]):
-        states[:, begin] = 0.0
-        for row, factor in zip(states[:, begin:end], decay.tolist(), strict=True):
-            row[:] = lfilter([1.0], [1.0, -factor], row)
+    for row, factor in zip(states, decay.tolist(), strict=True):
+        row[:] = lfilter([1.0], [1.0, -factor], row)
+    # What goes on from one drop into the next one decays there freely.
+    bounds = list(pairwise([0, *ends, states.shape[1]]))
+    powers = np.exp(poles[:, None] * step * np.arange(max(end - begin for begin, end in bounds)))
+    for begin, end in bounds:
+        states[:, begin:end] -= states[:, begin, None] * powers[:, : end - begin]
     output *= poles * np.where(poles.imag > 0, 2.0, 1.0)
     forced: Array = output.real @ states.real - output.imag @ states.imag + rows @ inputs @ series
     return forced

@@ -228,21 +228,23 @@ class LinearModel:
         further = unconstrained(names) if used.intersection(UNCONSTRAINED) else ()
         rows = Rows.of([one.row for one in elements], names, further).affine
         n, base = rows.shape[1], 1 + len(names)
-        # Every pair of an element's factors, the constant among them, is a part of κ g gᵀ.
-        owner, factor = np.nonzero(rows.any(axis=1))
-        first, second = np.nonzero(owner[:, None] == owner)
+        # Every pair of an element's entries, each of a coordinate and a factor, the constant among these, is a part of κ g gᵀ.
+        owner, coordinate, factor = np.nonzero(rows)
+        entry = rows[owner, coordinate, factor]
+        counts = np.bincount(owner, minlength=len(rows))
+        begins = np.cumsum(counts) - counts
+        first = np.repeat(np.arange(len(owner)), counts[owner])
+        second = np.arange(len(first)) - np.repeat(np.cumsum(counts**2) - counts**2, counts**2)
+        second = begins[owner[first]] + second % counts[owner[first]]
         own = owner[first]
-        squares = (size[own, None] * rows[own, :, factor[first]])[:, :, None] * rows[own, :, factor[second]][:, None]
         keys = np.sort([kappa[own].astype(np.int64), factor[first], factor[second]], axis=0)
-        code = np.ravel_multi_index((*keys, laws[own]), (base, base, base, len(LINEAR_LAWS)))
-        order = np.argsort(code, kind="stable")
-        codes, begins = np.unique(code[order], return_index=True)
-        by_law = np.add.reduceat(squares[order], begins) if codes.size else squares
-        products, which = np.unique(codes // len(LINEAR_LAWS), return_inverse=True)
-        terms = np.zeros((len(products), len(LINEAR_LAWS), n, n))
-        terms[which, codes % len(LINEAR_LAWS)] = by_law
+        codes, which = np.unique(np.ravel_multi_index((*keys,), (base, base, base)), return_inverse=True)
+        shape = (len(codes), len(LINEAR_LAWS), n, n)
+        place = np.ravel_multi_index((which, laws[own], coordinate[first], coordinate[second]), shape)
+        sums = np.bincount(place, size[own] * entry[first] * entry[second], math.prod(shape))
+        terms = np.asarray(sums, dtype=np.float64).reshape(shape)
         kept = terms.any(axis=(1, 2, 3))
-        products = np.stack(np.unravel_index(products[kept], (base, base, base)), axis=1)
+        products = np.stack(np.unravel_index(codes[kept], (base, base, base)), axis=1)
         return cls(tuple(names), products, terms[kept], tuple(elements))
 
     def with_known(self, known: Mapping[str, float]) -> LinearModel:
@@ -258,11 +260,12 @@ class LinearModel:
     @classmethod
     def stack(cls, models: Sequence[LinearModel]) -> LinearModel:
         """Stack models over the same parameters, so that all of them are evaluated at once."""
-        keys = list(dict.fromkeys(tuple(key) for model in models for key in model.products.tolist()))
-        terms = np.zeros((len(keys), len(models), *models[0].terms.shape[1:]))
-        for i, model in enumerate(models):
-            terms[[keys.index(tuple(key)) for key in model.products.tolist()], i] = model.terms
-        return cls(models[0].names, np.array(keys), terms)
+        keys = [[tuple(key) for key in model.products.tolist()] for model in models]
+        place = {key: i for i, key in enumerate(dict.fromkeys(key for own in keys for key in own))}
+        terms = np.zeros((len(place), len(models), *models[0].terms.shape[1:]))
+        for i, (model, own) in enumerate(zip(models, keys, strict=True)):
+            terms[[place[key] for key in own], i] = model.terms
+        return cls(models[0].names, np.array(list(place)), terms)
 
     def referred_to_front_axle(self, wheelbase: float) -> LinearModel:
         """Return the equations over the body's motion above the front axle, for a known wheelbase in m; see `Row`."""
@@ -277,12 +280,15 @@ class LinearModel:
         T, n = self._reduction(M), self.size
         return Matrices(np.swapaxes(T, -1, -2) @ M @ T, C[..., :n, :n], K[..., :n, :n])
 
-    def slopes(self, values: ArrayLike) -> Matrices:
-        """Return the derivatives of M, C and K at values of shape (parameter,); each of shape (parameter, ..., n, n)."""
+    def slopes(self, values: ArrayLike, along: Array | None = None) -> Matrices:
+        """Return the derivatives of M, C and K at values of shape (parameter,); each of shape (parameter, ..., n, n).
+
+        Those along some directions, shape (direction, parameter), where these are given.
+        """
         first, second, third = np.moveaxis(_with_one(values)[self.products], 1, 0)
         others = np.array([second * third, first * third, first * second])
-        changes = np.einsum("ik,ikp->pk", others, self._factors)
-        flat = changes @ self._flat
+        factors = self._factors if along is None else self._factors @ along.T
+        flat = np.einsum("ik,ikp->pk", others, factors) @ self._flat
         dM, dC, dK = np.moveaxis(flat.reshape(-1, *self.terms.shape[1:]), -3, 0)
         if not self.is_reduced:
             return Matrices(dM, dC, dK)
