@@ -20,7 +20,16 @@ from numpy.typing import NDArray
 from pages import arguments, figures, report_progress, run, table, write
 
 import sprung
-from sprung.fleets import RUN_LENGTH, WHEELBASE, FleetEstimates, FleetType, Population, chart_vehicles
+from sprung.fleets import (
+    RUN_LENGTH,
+    WHEELBASE,
+    FleetEstimates,
+    FleetType,
+    Population,
+    chart_vehicles,
+    estimate_vehicles,
+    fit_population,
+)
 from sprung.uncertainty import KnownValue
 from sprung.vehicle import TABLE_1_CAR, Vehicle
 
@@ -40,6 +49,10 @@ DROPS: tuple[Mapping[str, Any], ...] = ({"wheels": ("fl", "fr")}, {"wheels": ("f
 
 DRIFT, WEAK = 0.01, 0.15
 """What the scales of the rig read too much from the middle of the fleet on, and what the front dampers of one vehicle lack."""
+
+
+SMALL_FLEET = 30
+"""Vehicles of the smaller fleets that are drawn for the coverage; the larger ones have as many as were identified."""
 
 
 @dataclass(frozen=True)
@@ -127,6 +140,58 @@ def compared(one: FleetType, fleet: Sequence[Member]) -> list[dict[str, Any]]:
     return cases
 
 
+def drawn_coverage(own: FleetEstimates, vehicles: int, number: int) -> tuple[Real, Real, Real]:
+    """Return what the hierarchical estimates of a fleet are worth that is drawn with the true spread between vehicles.
+
+    Parameters
+    ----------
+    own
+        Its vehicles have the covariance matrices of these tests.
+    vehicles
+        How many it has.
+    number
+        Of the fleet: with the number of its vehicles, the seed.
+
+    Returns
+    -------
+    covered
+        Part of the 95 % intervals that contain the truth, shape (parameter,).
+    single, hierarchical
+        Mean square errors from the vehicle's own test and with the others, dimensionless, shape (parameter,).
+    """
+    random = np.random.default_rng([vehicles, number])
+    spread = np.array([SPREAD.get(name, 0.0) for name in own.names]) / 100
+    true = spread * random.standard_normal((vehicles, len(spread)))
+    covariances = own.covariances[random.integers(own.count, size=vehicles)]
+    factors = np.linalg.cholesky(covariances)
+    positions = true + np.einsum("nij,nj->ni", factors, random.standard_normal(true.shape))
+    found = estimate_vehicles(positions, covariances, fit_population(positions, covariances))
+    covered = np.mean(np.abs(found.positions - true) < 1.96 * found.stds, axis=0)
+    return covered, np.mean((positions - true) ** 2, axis=0), np.mean((found.positions - true) ** 2, axis=0)
+
+
+def coverages(own: FleetEstimates, vehicles: int, fleets: int, processes: int) -> list[dict[str, Any]]:
+    """Return coverage and gain of the hierarchical estimates of each parameter over fleets that are drawn."""
+    tasks = [(own, vehicles, number) for number in range(fleets)]
+    covered, single, joint = (
+        np.array(values) for values in zip(*run(drawn_coverage, tasks, processes, 1), strict=True)
+    )
+    gain = np.sqrt(single.mean(axis=0) / joint.mean(axis=0))
+    return [
+        {
+            "parameter": name,
+            "vehicles": vehicles,
+            "fleets": fleets,
+            "coverage": figures(100 * covered[:, j].mean()),
+            "coverage_between_fleets": figures(100 * covered[:, j].std()),
+            "least_coverage": figures(100 * covered[:, j].min()),
+            "gain": figures(gain[j]),
+        }
+        for j, name in enumerate(own.names)
+        if name in SPREAD
+    ]
+
+
 def redrawn(own: FleetEstimates, population: Population, number: int, drift: bool, weak: bool) -> FleetEstimates:
     """Return a fleet drawn from a population, with the errors of the real tests, drift and weak dampers."""
     random = np.random.default_rng([number, drift, weak])
@@ -208,8 +273,15 @@ def main() -> None:
             (True, True, "both"),
         )
     ]
+    own = sound.types[0].estimates
+    drawn = [
+        case
+        for vehicles, times in ((SMALL_FLEET, 20), (own.count, 4))
+        for case in coverages(own, vehicles, times * options.fleets, options.processes)
+    ]
     real = [real_case("in control", sound), real_case("scales drift, and one vehicle with weak dampers", second)]
-    write(options.to, "fleets", page(errors, real, cases), {"errors": errors, "identified": real, "charts": cases})
+    numbers = {"errors": errors, "coverage": drawn, "identified": real, "charts": cases}
+    write(options.to, "fleets", page(errors, drawn, real, cases), numbers)
 
 
 def identified(fleet: Sequence[Member], folder: Path, output: Path, processes: int) -> sprung.fleets.Fleet:
@@ -242,10 +314,14 @@ def deviation(one: Any) -> dict[str, Any]:
 
 
 def page(
-    errors: Sequence[Mapping[str, Any]], real: Sequence[Mapping[str, Any]], cases: Sequence[Mapping[str, Any]]
+    errors: Sequence[Mapping[str, Any]],
+    drawn: Sequence[Mapping[str, Any]],
+    real: Sequence[Mapping[str, Any]],
+    cases: Sequence[Mapping[str, Any]],
 ) -> str:
     """Write the page."""
     count, fleets = errors[0]["vehicles"], cases[0]["count"]
+    low, high = min(one["coverage"] for one in drawn), max(one["coverage"] for one in drawn)
     ratio = np.median([one["single_rmse"] / one["hierarchical_rmse"] for one in errors if one["hierarchical_rmse"]])
     rows = [
         [
@@ -319,6 +395,23 @@ errors of such a
 test are common to several parameters: the position of the centre of gravity, which two drops hardly determine. Vehicles of one
 type have nearly the same.
 
+## Coverage over many fleets
+
+How much the vehicles of a fleet differ is estimated once for all of them, and the worst determined direction is common to most
+parameters: the vehicles of one fleet are no independent trials of an interval. For the next table fleets were drawn, with the
+true spread
+and errors of the covariance matrices of the real tests. *Covered* is the mean over the fleets, *between* the standard
+deviation
+between single fleets, *least* the fleet with the lowest, all in percent; *gain* is how much
+smaller errors are than those of own tests.
+
+{coverage_table(drawn)}
+
+Over many fleets {low:.1f} to {high:.1f} % of the intervals contain the truth, parameter by parameter. Of a parameter that
+varies less between
+vehicles than a test can tell (*a*, *t_f*, *t_r*), a single fleet may state too much or too little, and with *a* of everything
+that shares its direction.
+
 ## Alarms of the identified fleets
 
 {chr(10).join(_sentences(real))}
@@ -337,6 +430,33 @@ the scale, and in which the weak dampers are found as such. Delay: vehicles from
 
     python docs/studies/fleets.py --campaigns {count} --fleets {fleets} --processes 2
 """
+
+
+def coverage_table(drawn: Sequence[Mapping[str, Any]]) -> str:
+    """Write the table of the coverage over drawn fleets, with columns for each number of vehicles."""
+    sizes = list(dict.fromkeys(one["vehicles"] for one in drawn))
+    by = {(one["parameter"], one["vehicles"]): one for one in drawn}
+    head = ["parameter"]
+    for size in sizes:
+        fleets = next(one["fleets"] for one in drawn if one["vehicles"] == size)
+        head += [f"{fleets} fleets of {size}: covered", "between", "least", "gain"]
+    rows = [
+        [
+            name,
+            *(
+                text
+                for size in sizes
+                for text in (
+                    f"{by[name, size]['coverage']:.1f}",
+                    f"{by[name, size]['coverage_between_fleets']:.1f}",
+                    f"{by[name, size]['least_coverage']:.0f}",
+                    f"{by[name, size]['gain']:.1f}",
+                )
+            ),
+        ]
+        for name in dict.fromkeys(one["parameter"] for one in drawn)
+    ]
+    return table(head, rows)
 
 
 def _text(value: float | None, form: str) -> str:

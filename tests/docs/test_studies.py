@@ -205,6 +205,11 @@ def test_fleets(tmp_path: Path) -> None:
         assert one["vehicles"] == 12
         assert 0 <= one["single_coverage"] <= 100
         assert one["hierarchical_stated"] <= one["single_stated"] * 1.01
+    assert {(one["vehicles"], one["fleets"]) for one in numbers["coverage"]} == {(30, 20), (12, 4)}
+    for one in numbers["coverage"]:
+        assert one["least_coverage"] <= one["coverage"] <= 100
+        assert one["coverage"] == pytest.approx(95, abs=7)  # 48 vehicles, of which those of a fleet share one spread
+        assert one["gain"] > 1
     assert [one["computed"] for one in numbers["identified"]] == [12, 7]  # from the middle on, and the weak dampers
     assert [one["count"] for one in numbers["charts"]] == [1] * 4
     assert "python docs/studies/fleets.py --campaigns 12 --fleets 1" in page

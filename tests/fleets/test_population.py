@@ -139,3 +139,22 @@ def test_coverage_of_the_estimates(count: int, fleets: int) -> None:
         found = estimate_vehicles(positions, covariances, fit_population(positions, covariances))
         covered.append(np.abs(found.positions - true) < 1.96 * found.stds)
     assert 0.93 < np.mean(covered) < 0.97
+
+
+def test_coverage_of_parameters_whose_spread_no_test_resolves() -> None:
+    """Over many fleets each parameter has its coverage, though a single fleet may take its spread for too little."""
+    random = np.random.default_rng(11)
+    spread, error = np.array([0.03, 0.03, 0.005, 0.005]), 0.013
+    # As of two drops: nearly all errors are one error, here of a position that hardly differs between vehicles.
+    shared = np.array([1.0, -1.0, 1.0, 0.3])
+    errors = error**2 * np.outer(shared, shared) + np.diag([0.003, 0.003, 0.001, 0.008]) ** 2
+    for count, fleets in ((5, 400), (30, 150)):
+        covered = []
+        for _ in range(fleets):
+            true = spread * random.normal(size=(count, 4))
+            positions = true + random.multivariate_normal(np.zeros(4), errors, count)
+            covariances = np.broadcast_to(errors, (count, 4, 4))
+            found = estimate_vehicles(positions, covariances, fit_population(positions, covariances))
+            covered.append((np.abs(found.positions - true) < 1.96 * found.stds).mean(axis=0))
+        # The standard errors of the means are 0.5 to 1 %.
+        assert np.all(np.abs(np.mean(covered, axis=0) - 0.95) < 0.03), (count, np.mean(covered, axis=0))
