@@ -189,3 +189,23 @@ def test_windows_of_time_add_up(decays: tuple[FreeDecay, ...], plain: ModelStruc
         informations.sum(axis=0) / np.outer(scale, scale), at.information / np.outer(scale, scale), atol=1e-6
     )
     assert found.disagreement_in_time < 2
+
+
+def test_a_step_gains_what_is_expected_of_it_where_initial_states_are_not_at_their_maximum(
+    campaign: Campaign, decays: tuple[FreeDecay, ...], plain: ModelStructure, optimum: FitResult
+) -> None:
+    """Without the states' own part a fit would end as soon as the parameters alone have nothing more to gain."""
+    larger = plain.with_terms(("friction",))
+    start = optimum.parameters | {"F_f": 0.0, "F_r": 0.0, "s_f": 2e5, "s_r": 2e5}
+    known = dict(plain.known) | {
+        name: sprung.uncertainty.KnownValue(value) for name, value in start.items() if name[:2] in ("F_", "s_")
+    }
+    states = optimum.states + 2e-5 * np.random.default_rng(1).standard_normal(optimum.states.shape)
+    begun = fit_nonlinear(
+        decays, larger.nonlinear_models, campaign.sensors, known, start=start, states=states, near=True, most=0
+    )
+    step, expected = begun.problem.normal_equations(begun.iterate).step()
+    _, gain = begun.problem.trial(begun.iterate, step)
+    of_parameters = begun.problem.normal_equations(begun.iterate)._replace(eliminated=np.zeros((2, 0))).step()[1]
+    assert of_parameters < 0.5 * expected
+    assert gain == pytest.approx(expected, rel=0.3)

@@ -39,7 +39,7 @@ class Residuals(NamedTuple):
         gradient = -jacobian.conj().T @ values
         return NormalEquations(information + 1e-14 * scaling, gradient, scaling, np.eye(len(point)))
 
-    def trial(self, point: Array, step: Array) -> tuple[Array, float]:
+    def trial(self, point: Array, step: Array, _damping: float) -> tuple[Array, float]:
         before, after = (self.residuals(x)[0] for x in (point, point + step))
         return point + step, float(np.sum(np.abs(before) ** 2) - np.sum(np.abs(after) ** 2))
 
@@ -51,7 +51,7 @@ class Wall(NamedTuple):
         del point
         return NormalEquations(np.eye(1), np.ones(1), np.eye(1), np.eye(1))
 
-    def trial(self, point: Real, step: Real) -> tuple[Real, float]:
+    def trial(self, point: Real, step: Real, _damping: float) -> tuple[Real, float]:
         return point + step, -np.inf if point[0] + step[0] > 1.0 else float(step[0])
 
 
@@ -62,8 +62,30 @@ class Cliff(NamedTuple):
         del point
         return NormalEquations(np.eye(1), np.full(1, 1e6), np.eye(1), np.eye(1))
 
-    def trial(self, point: Real, step: Real) -> tuple[Real, float]:
+    def trial(self, point: Real, step: Real, _damping: float) -> tuple[Real, float]:
         return point + step, -np.inf
+
+
+class Lagging(NamedTuple):
+    """Twice the log-likelihood -x² - f(y)², where y is eliminated, f(y) = arctan y: undamped steps beyond 1.39 diverge."""
+
+    def normal_equations(self, point: Real) -> NormalEquations:
+        eliminated = np.array([[1.0], [np.arctan(point[1]) ** 2]])
+        return NormalEquations(np.eye(1), -point[:1], np.eye(1), np.eye(1), eliminated)
+
+    def trial(self, point: Real, step: Real, damping: float) -> tuple[Real, float]:
+        own = -np.arctan(point[1]) * (1 + point[1] ** 2) / (1 + damping)
+        tried = point + np.array([step[0], own])
+        value, other = (x**2 + np.arctan(y) ** 2 for x, y in (point, tried))
+        return tried, float(value - other)
+
+
+@pytest.mark.parametrize("lag", [0.5, 3.0])
+def test_it_has_not_converged_before_eliminated_unknowns_have(lag: float) -> None:
+    """Nothing is left to gain by x itself; undamped steps of what is eliminated lose where they begin far away."""
+    found = maximise(Lagging(), np.array([0.0, lag]), tolerance=1e-9, damping=1e-9, most_steps=50)
+    assert found.converged
+    np.testing.assert_allclose(found.point, [0.0, 0.0], atol=1e-4)
 
 
 def test_the_end_of_a_curved_valley_is_found() -> None:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from sprung.analysis.analysis import Analysis
 from sprung.analysis.settling import settle_corrections
-from sprung.estimation import CONVERGED, MOST_STEPS, NEAR, FitResult, fit_from_contact, fit_linear
+from sprung.estimation import CONVERGED, NEAR, FitResult, fit_linear
 from sprung.faults import is_explained
 from sprung.preprocess import FreeDecay
 from sprung.progress import Progress
@@ -21,16 +21,12 @@ from sprung.selection import (
     choose_structure,
     fit_requested_terms,
     fit_structure,
+    from_contact,
     needed_terms,
     select_roll_axis_height,
 )
 
 Real = NDArray[np.float64]
-
-
-_STEPPED = 1e-3
-"""Expected gain in log-likelihood at which a fit by time stepping has converged: a twentieth of a standard error, of which
-the last step leaves less. Forces are solved for to a part of their size, so the likelihood is no smoother."""
 
 
 def fit_baseline(run: Analysis, progress: Progress) -> Analysis:
@@ -127,20 +123,6 @@ def fit_baseline_model(
         enough=NEAR,
         progress=progress,
     )
-
-
-def from_contact(search: ModelSearch, most: int = MOST_STEPS) -> ModelSearch:
-    """Let every decay begin where all tyres of the fitted vehicle stay on the ground, and fit again."""
-    enough = CONVERGED
-    if search.structure.is_time_stepped:
-        # Where the model has errors, statements about the vehicle move the fit again, once its overdispersion is known.
-        enough = _STEPPED if search.overdispersion == 1 else NEAR * search.overdispersion
-
-    def refitted(decays: Sequence[FreeDecay], fit: FitResult, states: Real) -> FitResult:
-        return fit_structure(search.structure, decays, fit, enough, search.progress, states, most=most)
-
-    decays, fit = fit_from_contact(search.decays, search.structure.linear_models, search.fit, refitted)
-    return replace(search, decays=decays, fit=fit)
 
 
 def described(search: ModelSearch) -> str:

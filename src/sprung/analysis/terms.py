@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from sprung.analysis.analysis import Analysis
-from sprung.analysis.baseline import described, from_contact, structures
+from sprung.analysis.baseline import described, structures
 from sprung.analysis.first_term import explaining_term
 from sprung.analysis.on_pads import NOT_STEPPED, has_pads
 from sprung.faults import consistency_of
@@ -15,6 +15,7 @@ from sprung.selection import (
     ModelSearch,
     SelectionStep,
     fit_forced_terms,
+    from_contact,
     leave_out_refused,
     leave_out_unneeded,
     select_flexible_body,

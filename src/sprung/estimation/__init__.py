@@ -3,7 +3,7 @@
 from sprung.estimation.characteristics import characteristics_of, estimate_quantity, rates_at_motion_ratios
 from sprung.estimation.closed_form import ClosedFormObjective
 from sprung.estimation.closed_form_likelihood import ClosedFormAt
-from sprung.estimation.contact import clear_of_splines, fit_from_contact
+from sprung.estimation.contact import clear_of_splines, fit_from_contact, fit_from_start
 from sprung.estimation.curves import CurvePoint, ForceCurve, force_curves
 from sprung.estimation.elimination import eliminate
 from sprung.estimation.estimates import (
@@ -85,6 +85,7 @@ __all__ = [
     "estimate_quantity",
     "expected_ends",
     "fit_from_contact",
+    "fit_from_start",
     "fit_jointly",
     "fit_linear",
     "fit_nonlinear",

@@ -17,6 +17,7 @@ from sprung.estimation.modal_solution import ModalSolution, differentiate_modes,
 from sprung.estimation.objective import ObjectiveAt
 from sprung.estimation.projected_response import ExponentialSums, ProjectedResponse
 from sprung.estimation.records import in_order
+from sprung.optimisation import NONE_ELIMINATED
 from sprung.vibration import exponentials, real_product
 
 if TYPE_CHECKING:
@@ -51,6 +52,7 @@ class ClosedFormAt:
     sums: tuple[ExponentialSums, ...]
 
     is_reversible = True
+    eliminated = NONE_ELIMINATED
     by_window = None
     coupling = None
 
@@ -63,7 +65,7 @@ class ClosedFormAt:
         """Return the likelihood with other weights, its sums over the samples being the same."""
         return replace(self, weights=weights)
 
-    def moved(self, values: Real) -> ObjectiveAt:
+    def moved(self, values: Real, _damping: float = 0.0, /) -> ObjectiveAt:
         """Return the likelihood at other parameter values, SI, shape (parameter,)."""
         return self.objective.at(values, self.weights)
 

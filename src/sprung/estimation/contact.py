@@ -79,7 +79,7 @@ def fit_from_contact(
         shifts = _shifts(best, models, fit)
         if not any(shifts):
             break
-        moved, refitted = _refit(best, shifts, fit, again)
+        moved, refitted = fit_from_start(best, shifts, fit, again)
         if not _is_as_good(refitted, fit):
             # Where no sensor shows the landing, little is left of wheel hop in the first decays: their fit may see the last
             # contact too early, and what it does not explain then is none.
@@ -88,17 +88,34 @@ def fit_from_contact(
             shifts = _explained(best, shifts, fit)
             if not any(shifts):
                 break
-            moved, refitted = _refit(best, shifts, fit, again)
+            moved, refitted = fit_from_start(best, shifts, fit, again)
             if not _is_as_good(refitted, fit):
                 break
         best, fit, settled = moved, refitted, True
     return best, fit if settled else again(best, fit, fit.states).after(fit)
 
 
-def _refit(
+def fit_from_start(
     decays: Sequence[FreeDecay], shifts: Sequence[int], fit: FitResult, again: Refit
 ) -> tuple[tuple[FreeDecay, ...], FitResult]:
-    """Return decays with other starts, and their fit."""
+    """Let decays begin at other samples, and fit them.
+
+    Parameters
+    ----------
+    decays
+        As fitted.
+    shifts
+        Samples by which each begins later, shape (drop,).
+    fit
+        Their fit.
+    again
+        As for `fit_from_contact`.
+
+    Returns
+    -------
+    decays, fit
+        With the other starts.
+    """
     states = fit.states.copy()
     for drop, (decay, shift) in enumerate(zip(decays, shifts, strict=True)):
         before = max(-shift, 0)

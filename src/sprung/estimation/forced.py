@@ -14,6 +14,7 @@ from sprung.estimation.forced_response import ForcedResponse
 from sprung.estimation.objective import NoiseCoupling
 from sprung.estimation.spectral_lines import SpectralLines, lines_of
 from sprung.estimation.starts import VehicleSize
+from sprung.optimisation import NONE_ELIMINATED
 from sprung.preprocess import FreeDecay
 from sprung.vehicle import LinearModel, PadInputs, Readout, Sensor, Wheel
 
@@ -149,6 +150,7 @@ class ForcedAt:
     responses: tuple[tuple[ForcedResponse, ...], ...]
 
     is_reversible = True
+    eliminated = NONE_ELIMINATED
     by_window = None
     modal = None
 
@@ -156,7 +158,7 @@ class ForcedAt:
         """Return the likelihood with other weights, the response being the same."""
         return replace(self, weights=weights)
 
-    def moved(self, values: Real) -> ForcedAt:
+    def moved(self, values: Real, _damping: float = 0.0, /) -> ForcedAt:
         """Return the likelihood at other parameter values, SI, shape (parameter,)."""
         return self.objective.at(values, self.weights)
 

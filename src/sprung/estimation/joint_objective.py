@@ -13,6 +13,7 @@ from sprung.estimation.closed_form import ClosedFormObjective
 from sprung.estimation.forced import ForcedObjective
 from sprung.estimation.objective import LinearObjective, NoiseCoupling, ObjectiveAt
 from sprung.estimation.starts import VehicleSize
+from sprung.optimisation import NONE_ELIMINATED
 from sprung.preprocess import FreeDecay
 from sprung.vehicle import LinearModel, Readout, Sensor
 
@@ -143,6 +144,7 @@ class JointAt:
     parts: tuple[ObjectiveAt, ObjectiveAt]
 
     is_reversible = True
+    eliminated = NONE_ELIMINATED
     by_window = None
     modal = None
 
@@ -161,7 +163,7 @@ class JointAt:
         free, driven = (part.reweighted(weights) for part in self.parts)
         return replace(self, parts=(free, driven))
 
-    def moved(self, values: Real) -> JointAt:
+    def moved(self, values: Real, _damping: float = 0.0, /) -> JointAt:
         """Return the likelihood at other parameter values, SI, shape (parameter,)."""
         free, driven = (part.moved(values) for part in self.parts)
         return replace(self, parts=(free, driven))

@@ -17,6 +17,7 @@ from scipy.linalg import expm
 from sprung.estimation.objective import Objective, ObjectiveAt
 from sprung.estimation.projected_response import initial_state_prior_std
 from sprung.estimation.records import channel_rate_ratios
+from sprung.optimisation import NONE_ELIMINATED
 from sprung.preprocess import FreeDecay
 from sprung.vehicle import LinearModel, Readout, affine_response, highest_derivatives, state_matrix
 
@@ -51,6 +52,7 @@ class MatrixExponentialAt:
     weights: Real
 
     is_reversible = True
+    eliminated = NONE_ELIMINATED
     by_window = None
     coupling = None
     modal = None
@@ -59,7 +61,7 @@ class MatrixExponentialAt:
         """Return the likelihood with other weights."""
         return replace(self, weights=weights)
 
-    def moved(self, values: Real) -> ObjectiveAt:
+    def moved(self, values: Real, _damping: float = 0.0, /) -> ObjectiveAt:
         """Return the likelihood at other parameter values, SI, shape (parameter,)."""
         return self.objective.at(values, self.weights)
 

@@ -103,9 +103,7 @@ def fit_nonlinear(
     if not beginning_only:
         stages.append((list(decays), enough, _FINE))
     for part, tolerance, longest_step in stages:
-        objective = _objective(
-            part, models, sensors, known, states, tilting, longest_step, _COARSE if tolerance > CONVERGED else _FINE
-        )
+        objective = _objective(part, models, sensors, known, states, tilting, longest_step)
         problem = _problem(objective, known, values, usual)
         start_damping = FAR if usual else CLOSE_BY
         if tolerance >= _ON_THE_WAY or beginning_only:
@@ -158,7 +156,7 @@ def score_stepped_terms(
     """
     known = statements_of(known, sensors, next(iter(models.values())).names)
     values = expected_nuisances(known) | dict(values)
-    objective = _objective(decays, models, sensors, known, states, tilting, _COARSE, _COARSE)
+    objective = _objective(decays, models, sensors, known, states, tilting, _COARSE)
     problem = _problem(objective, known, values)
     names, priors = problem.priors.coordinates.names, problem.priors
     u = priors.project(priors.coordinates.from_parameters(values))
@@ -194,10 +192,9 @@ def _objective(
     states: Real,
     tilting: bool,
     longest_step: float,
-    longest_derivative_step: float,
 ) -> TimeSteppingObjective:
     readout = readout_of(sensors, next(iter(models.values())).names, known)
-    return TimeSteppingObjective(tuple(decays), models, readout, states, tilting, longest_step, longest_derivative_step)
+    return TimeSteppingObjective(tuple(decays), models, readout, states, tilting, longest_step)
 
 
 def _problem(

@@ -139,6 +139,13 @@ class ObjectiveAt(Protocol):
         """Number of eliminated unknowns that each channel determines, shape (channel,)."""
 
     @property
+    def eliminated(self) -> Real:
+        """Eigenvalues and squared gradients of eliminated unknowns, as in `NormalEquations`, shape (2, unknown).
+
+        Of those alone that are not at their maximum already.
+        """
+
+    @property
     def coupling(self) -> NoiseCoupling | None:
         """How the noise of channels mixes in their residuals; None where eliminated unknowns are few beside the samples."""
 
@@ -180,8 +187,11 @@ class ObjectiveAt(Protocol):
     def reweighted(self, weights: Real) -> Self:
         """Return the likelihood with other weights; what does not depend on them is not computed again."""
 
-    def moved(self, values: Real) -> ObjectiveAt:
-        """Return the likelihood at other parameter values, initial states predicted where they are not eliminated."""
+    def moved(self, values: Real, damping: float = 0.0, /) -> ObjectiveAt:
+        """Return the likelihood at other parameter values.
+
+        Where initial states are not eliminated exactly they are predicted, with so much damping of their own step.
+        """
 
     def with_optimal_states(self) -> ObjectiveAt:
         """Return the likelihood with the initial states that maximise it at these parameters."""

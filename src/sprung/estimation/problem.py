@@ -304,12 +304,14 @@ class EstimationProblem:
 
     def normal_equations(self, iterate: Iterate) -> NormalEquations:
         """Return how twice the log-likelihood rises from an iterate."""
-        return identifiable_equations(*self.system(iterate))
+        equations = identifiable_equations(*self.system(iterate))
+        eigenvalues, squares = iterate.at.eliminated
+        return equations._replace(eliminated=np.stack([eigenvalues, squares / self.overdispersion]))
 
-    def trial(self, iterate: Iterate, step: Real) -> tuple[Iterate, float]:
+    def trial(self, iterate: Iterate, step: Real, damping: float = 0.0) -> tuple[Iterate, float]:
         """Return the iterate a step of the coordinates away, and what twice the log-likelihood gains."""
         u = self.priors.project(iterate.u + step)
-        at = iterate.at.moved(self.priors.coordinates.values(u))
+        at = iterate.at.moved(self.priors.coordinates.values(u), damping)
         gain = self.gain(iterate, Iterate(u, at))
         if not np.isfinite(gain):
             return iterate, -np.inf

@@ -59,14 +59,15 @@ class TimeSteppingAt:
         """Return the likelihood with other weights; motion and derivatives are the same, and are not computed again."""
         return replace(self, weights=weights)
 
-    def moved(self, values: Real) -> TimeSteppingAt:
+    def moved(self, values: Real, damping: float = 0.0, /) -> TimeSteppingAt:
         """Return the likelihood at other parameter values, with the initial states that should explain the records there."""
         information, gradient = self._normal_equations
         parameters = len(self.values)
-        right = gradient[:, parameters:] - np.einsum(
-            "dzp,p->dz", information[:, parameters:, :parameters], values - self.values
-        )
-        step = np.linalg.solve(information[:, parameters:, parameters:], right[:, :, None])[:, :, 0]
+        own = information[:, parameters:, parameters:]
+        response = np.einsum("dzp,p->dz", information[:, parameters:, :parameters], values - self.values)
+        damped = own + damping * own * np.eye(own.shape[1])
+        step = np.linalg.solve(damped, gradient[:, parameters:, None]) - np.linalg.solve(own, response[:, :, None])
+        step = step[:, :, 0]
         of_model = (values - self.values)[: self.objective.sensors.shared]
         change = np.hstack([np.tile(of_model, (len(step), 1)), step])
         return self.objective.at_states(values, self.weights, self.stepped.begin + step, self.stepped.predict(change))
@@ -138,6 +139,17 @@ class TimeSteppingAt:
     def information(self) -> Real:
         """Fisher information of the parameters, shape (parameter, parameter)."""
         return np.asarray(self.by_drop[1].sum(axis=0))
+
+    @cached_property
+    def eliminated(self) -> Real:
+        """Eigenvalues and squared gradients of the initial states, as in `NormalEquations`, shape (2, drop · state)."""
+        (information, gradient), parameters = self._normal_equations, len(self.values)
+        scale = np.sqrt(np.diagonal(information, axis1=1, axis2=2)[:, parameters:])
+        eigenvalues, vectors = np.linalg.eigh(
+            information[:, parameters:, parameters:] / (scale[:, :, None] * scale[:, None, :])
+        )
+        along = np.einsum("dij,di->dj", vectors, gradient[:, parameters:] / scale)
+        return np.stack([eigenvalues.ravel(), along.ravel() ** 2])
 
     @cached_property
     def leverage(self) -> Real:

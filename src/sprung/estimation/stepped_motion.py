@@ -159,13 +159,8 @@ class SteppedMotion:
             units = np.eye(outputs.shape[2])[objective.angles]
             angles = np.broadcast_to(units, (len(outputs), *units.shape))
             outputs = np.concatenate([outputs, angles], axis=1)
-        stepper, trajectory, skipped = self.stepper, self.trajectory, objective.derivative_every
-        if skipped > 1:
-            longer = [skipped * time for time in objective.times]
-            stepper = Stepper.of(objective.models_by_kind, longer, objective.kind, self.values[:shared])
-            trajectory = Trajectory(*(part[::skipped] for part in trajectory))
         moved_drops, starts, transitions = differentiate_motions(
-            stepper, trajectory, outputs, objective.every // skipped
+            self.stepper, self.trajectory, outputs, objective.every
         )
         products = []
         for drop, (moved, samples) in enumerate(zip(moved_drops, objective.samples, strict=True)):

@@ -57,8 +57,6 @@ class TimeSteppingObjective:
         Whether the sensors turn with the body, and measure the less of gravity.
     longest_step
         s: over a longer one forces do not run straight.
-    longest_derivative_step
-        s, of the steps by which motions are differentiated, if that is longer: rougher derivatives lead to the same optimum.
     """
 
     decays: Sequence[FreeDecay]
@@ -67,7 +65,6 @@ class TimeSteppingObjective:
     states: Real
     sensors_tilt: bool
     longest_step: float
-    longest_derivative_step: float = 0.0
 
     @cached_property
     def _kinds(self) -> list[tuple[str, float]]:
@@ -93,12 +90,6 @@ class TimeSteppingObjective:
     def every(self) -> int:
         """Steps from one sample to the next."""
         return max(int(np.ceil(1.0 / (min(decay.rate for decay in self.decays) * self.longest_step))), 1)
-
-    @cached_property
-    def derivative_every(self) -> int:
-        """Steps over each of which the derivatives make one."""
-        most = self.longest_derivative_step / max(self.times)
-        return max(part for part in range(1, self.every + 1) if self.every % part == 0 and part <= max(most, 1))
 
     @cached_property
     def samples(self) -> Index:

@@ -81,7 +81,7 @@ class ModalProblem(NamedTuple):
         scaled = information * scale[:, None] * scale + _ROUNDING * unit
         return NormalEquations(scaled, scale * point.gradient.ravel()[free], unit, directions)
 
-    def trial(self, point: ModalObjective, step: Complex) -> tuple[ModalObjective, float]:
+    def trial(self, point: ModalObjective, step: Complex, _damping: float = 0.0) -> tuple[ModalObjective, float]:
         """Return the likelihood a step away, and what it gains."""
         moved = point.moved(step.reshape(point.gradient.shape))
         if not _allowed(moved, self.decays):

@@ -29,6 +29,9 @@ _HELD_BACK = 3
 
 _FIRM = 1.0  # damping above which a small gain says nothing of what is left to gain
 
+NONE_ELIMINATED: Real = np.zeros((2, 0))
+"""Eliminated unknowns where there are none, or where all are at their maximum already."""
+
 Point = TypeVar("Point")
 
 
@@ -45,12 +48,16 @@ class NormalEquations(NamedTuple):
         What damping multiplies: Marquardt's scaling, shape (direction, direction).
     directions
         In the coordinates, as columns, shape (coordinate, direction).
+    eliminated
+        Of unknowns that are eliminated and that every step moves towards their maximum, too, in units of their own information:
+        eigenvalues of the information, and squared components of the gradient along its eigenvectors; shape (2, unknown).
     """
 
     information: Array
     gradient: Array
     scaling: Array
     directions: Array
+    eliminated: Real = NONE_ELIMINATED
 
     def step(self, damping: float = 0.0, longest: float = np.inf) -> tuple[Array, float]:
         """Return a damped step in the coordinates, the Newton step without damping, and its expected gain.
@@ -58,8 +65,10 @@ class NormalEquations(NamedTuple):
         The gain is that of twice the log-likelihood. A coordinate that would go further than the `longest` is held back as by
         information of its own, so that one of which hardly anything is known does not shorten the step of all others.
         """
+        eigenvalues, squares = self.eliminated
+        of_eliminated = float(np.sum(squares / (eigenvalues + damping)))
         if not self.gradient.size:
-            return np.zeros(len(self.directions)), 0.0
+            return np.zeros(len(self.directions)), of_eliminated
         matrix = self.information + damping * self.scaling
         along = np.linalg.solve(matrix, self.gradient)
         for _ in range(_HELD_BACK):
@@ -71,7 +80,8 @@ class NormalEquations(NamedTuple):
             v = np.einsum("ij,ji->i", own, np.linalg.solve(matrix, own.T)).real
             matrix = matrix + own.T @ ((far[far > longest] / longest - 1) / v * own.T).T
             along = np.linalg.solve(matrix, self.gradient)
-        return _limited(self.directions @ along, longest), float((along.conj() @ self.gradient).real)
+        gain = float((along.conj() @ self.gradient).real) + of_eliminated
+        return _limited(self.directions @ along, longest), gain
 
 
 class Maximisable(Protocol[Point]):
@@ -80,8 +90,11 @@ class Maximisable(Protocol[Point]):
     def normal_equations(self, point: Point, /) -> NormalEquations:
         """Return how twice the log-likelihood rises from a point."""
 
-    def trial(self, point: Point, step: Array, /) -> tuple[Point, float]:
-        """Return the point a step (shape (coordinate,)) away, and the gain in twice the log-likelihood: -inf if it has none."""
+    def trial(self, point: Point, step: Array, damping: float, /) -> tuple[Point, float]:
+        """Return the point a step (shape (coordinate,)) away, and the gain in twice the log-likelihood: -inf if it has none.
+
+        The steps of eliminated unknowns are damped as well.
+        """
 
 
 class Maximum(NamedTuple, Generic[Point]):
@@ -174,12 +187,12 @@ def _gaining_step(
         step, expected = equations.step(damping, longest)
         if not first and expected < tolerance:
             return None
-        tried, gain = problem.trial(point, step)
+        tried, gain = problem.trial(point, step, damping)
         if gain >= 0:
             return tried, _next_damping(damping, gain / max(expected, np.finfo(float).tiny)), expected
         if first and np.isfinite(gain):
             back, _ = problem.normal_equations(tried).step(damping, longest)
-            second_point, further = problem.trial(tried, back)
+            second_point, further = problem.trial(tried, back, damping)
             if gain + further > 0:
                 return second_point, damping, max(expected, gain + further)
             first = False

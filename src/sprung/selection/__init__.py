@@ -6,6 +6,7 @@ from sprung.selection.backward_elimination import (
     leave_out_unneeded,
     needed_terms,
 )
+from sprung.selection.contact import from_contact
 from sprung.selection.description import TermDescription, describe_terms
 from sprung.selection.error_budget import FALSE_ALARM_SHARE, required_gain
 from sprung.selection.finite_rotation import select_finite_rotation
@@ -45,6 +46,7 @@ __all__ = [
     "fit_requested_terms",
     "fit_structure",
     "fit_term",
+    "from_contact",
     "leave_out_refused",
     "leave_out_undetermined",
     "leave_out_unneeded",

@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 from sprung.progress import Step
+from sprung.selection.contact import ON_THE_WAY, from_contact, is_likelier
 from sprung.selection.from_ordinary_vehicle import select_from_ordinary_vehicle
 from sprung.selection.linear_terms import ENGINE
 from sprung.selection.scoring import score_terms
@@ -51,7 +52,7 @@ def select_nonlinear_terms(search: ModelSearch, plain: ModelStructure) -> ModelS
     for select in _searches(search, plain, ranked[:_TRIED_FIRST]):
         found = select(replace(search, steps=steps))
         steps = found.steps
-        best = found if found.delta_bic(best) > 0 else best
+        best = found if is_likelier(found, best) else best
         if best.structure.is_nonlinear and not best.is_misfit_large:
             break
     if not best.structure.is_nonlinear:
@@ -85,4 +86,6 @@ def _searches(search: ModelSearch, plain: ModelStructure, ranked: Sequence[str])
 def _from_base(base: ModelSearch, terms: Sequence[str]) -> ModelSearch:
     """Add the likeliest of some nonlinear terms, and further ones beside it."""
     found = try_likeliest(base, terms)
-    return select_further_terms(found) if found.structure.names != base.structure.names else found
+    if found.structure.names == base.structure.names:
+        return found
+    return select_further_terms(from_contact(found, enough=ON_THE_WAY))

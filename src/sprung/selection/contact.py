@@ -1,0 +1,88 @@
+"""Contact in the search for the model: a model with more terms shows better where the last tyre touched for good.
+
+Samples in which a wheel is still off the ground are explained by no model of one that is not. As long as they are fitted, every
+gain is small beside what they leave.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sprung.estimation import CONVERGED, MOST_STEPS, NEAR, FitResult, fit_from_contact, fit_from_start
+from sprung.preprocess import FreeDecay
+from sprung.selection.search import ModelSearch
+from sprung.selection.starts import fit_structure
+
+Real = NDArray[np.float64]
+
+_STEPPED = 1e-3
+"""Expected gain in log-likelihood at which a fit by time stepping has converged: a twentieth of a standard error, of which
+the last step leaves less. Forces are solved for to a part of their size, so the likelihood is no smoother."""
+
+
+ON_THE_WAY = 1.0
+"""Expected gain in log-likelihood at which a fit ends beside which further terms are tried: each has to gain many times it."""
+
+
+def from_contact(search: ModelSearch, most: int = MOST_STEPS, enough: float | None = None) -> ModelSearch:
+    """Let every decay begin where all tyres of the fitted vehicle stay on the ground, and fit again.
+
+    Parameters
+    ----------
+    search
+        The present model and its fit, of the decays or of their beginnings.
+    most
+        Largest number of iterations.
+    enough
+        Expected gain in log-likelihood at which to stop; without it where a result may be taken from the fit.
+
+    Returns
+    -------
+    ModelSearch
+    """
+    if enough is None:
+        enough = CONVERGED
+        if search.structure.is_time_stepped:
+            # Where the model has errors, statements about the vehicle move the fit again, once its overdispersion is known.
+            enough = _STEPPED if search.overdispersion == 1 else NEAR * search.overdispersion
+    decays, fit = fit_from_contact(
+        search.decays, search.structure.linear_models, search.fit, lambda *start: _refit(search, enough, most, *start)
+    )
+    return replace(search, decays=decays, fit=fit)
+
+
+def is_likelier(search: ModelSearch, other: ModelSearch) -> bool:
+    """Whether a model explains the decays better than another one, by the Bayesian information criterion.
+
+    Parameters
+    ----------
+    search, other
+        Of the same drops. Where their decays begin at different samples, the later ones count: in those before, one of the
+        models has a wheel off the ground.
+    """
+    if search.decays is not other.decays:
+        starts = [max(decay.start, another.start) for decay, another in zip(search.decays, other.decays, strict=True)]
+        search, other = _begun_at(search, starts), _begun_at(other, starts)
+    return search.delta_bic(other) > 0
+
+
+def _begun_at(search: ModelSearch, starts: Sequence[float]) -> ModelSearch:
+    """Return the search with decays that begin at later times, s, and its model fitted to them."""
+    shifts = [round((start - decay.start) * decay.rate) for start, decay in zip(starts, search.decays, strict=True)]
+    if not any(shifts):
+        return search
+    enough = search.overdispersion if search.structure.is_time_stepped else NEAR
+    decays, fit = fit_from_start(
+        search.decays, shifts, search.fit, lambda *start: _refit(search, enough, MOST_STEPS, *start)
+    )
+    return replace(search, decays=decays, fit=fit)
+
+
+def _refit(
+    search: ModelSearch, enough: float, most: int, decays: Sequence[FreeDecay], fit: FitResult, states: Real
+) -> FitResult:
+    return fit_structure(search.structure, decays, fit, enough, search.progress, states, most=most)

@@ -1,0 +1,43 @@
+"""Contact in the search for the model: models whose decays begin at different samples are compared on the same ones."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from sprung.estimation import fit_linear
+from sprung.preprocess import prepare
+from sprung.selection import ModelSearch, choose_structure
+from sprung.selection.contact import is_likelier
+from sprung.simulation import simulate
+from sprung.vehicle import TABLE_1_CAR, Vehicle
+
+
+@pytest.fixture(scope="module")
+def plain() -> ModelSearch:
+    barred = Vehicle.from_parameters(TABLE_1_CAR.parameters | {"k_af": 400.0, "k_ar": 400.0})
+    drops = [{"wheels": wheels} for wheels in (("fl", "fr"), ("fl", "rl"))]
+    campaign = simulate(barred, drops=drops, rate=500, noise=0.02, seed=4)
+    structure, decays = choose_structure(campaign, "shared", ()), prepare(campaign).decays
+    return ModelSearch(
+        structure, fit_linear(decays, structure.linear_models, structure.sensors, structure.known), decays
+    )
+
+
+@pytest.fixture(scope="module")
+def with_bar(plain: ModelSearch) -> ModelSearch:
+    return plain.refit(plain.with_terms(["anti-roll"]))
+
+
+@pytest.mark.parametrize("late", ["plain", "with bar"])
+def test_models_are_compared_from_the_later_start_on(plain: ModelSearch, with_bar: ModelSearch, late: str) -> None:
+    """A likelihood grows with the samples: that of shorter decays says nothing beside that of longer ones."""
+
+    def shortened(search: ModelSearch) -> ModelSearch:
+        decays = tuple(decay.shifted(40) for decay in search.decays)
+        return replace(search, decays=decays).refit(search.structure)
+
+    one, other = (shortened(plain), with_bar) if late == "plain" else (plain, shortened(with_bar))
+    assert is_likelier(other, one)
+    assert not is_likelier(one, other)
