@@ -314,3 +314,77 @@ def test_what_cannot_be_written_hinders_nothing_else(path: Path) -> None:
     assert tomllib.loads(view["text"])["load"][0] == {"name": "bricks", "items": [{"mass": 240}]}
     with pytest.raises(InputError, match="Change it in the text of the file"):
         form_view(str(path), text, given, "add item load.0")
+
+
+LOADS = """[[load]]
+name = "loaded"
+items = "TODO: [ { mass = ..., position = [x, y, z] }, ... ], kg and m, one for each piece of this load"
+[[load]]
+name = "guests"
+added = "TODO: totals"
+[[load]]
+name = "none"
+"""
+
+
+def viewed(text: str, path: Path, action: str = "", **values: str) -> dict[str, Any]:
+    """What the page shows after something was entered or a button was pressed."""
+    from sprung.app.form_view import form_view  # noqa: PLC0415 (imports the drawings)
+
+    return form_view(str(path), text, entered(form_of(text, path), **values), action)
+
+
+def test_a_load_that_is_not_described_is_marked_at_the_load(path: Path) -> None:
+    view = viewed(LOADS, path)
+    gaps = {group["name"]: len(group["gaps"]) for group in view["form"]["groups"] if group["section"] == "load"}
+    assert gaps == {"load.0": 1, "load.1": 1, "load.2": 1}
+    assert [each["text"] for each in view["form"]["where"]] == ["Load 1: loaded", "Load 2: guests", "Load 3: none"]
+    assert view["form"]["missing"] == 3
+
+
+def test_every_missing_place_is_in_the_list_of_places(path: Path) -> None:
+    text = FILE.replace("std = 2", "").replace('load = "sandbag"', 'load = "sandbags"\nstart = 2\nend = 1') + LOADS
+    text = text.replace("wheelbase = ", "cg_height = { value = 'TODO: m' }\nwheelbase = ").replace(
+        "position = [-2.65, 0.560, 0.50]", "position = [-2.65, 'TODO: y', 0.50]"
+    )
+    form = viewed(text, path)["form"]
+    assert form["missing"] == 7
+    assert [each["text"] for each in form["where"]] == [
+        *("Vehicle, Wheelbase", "Vehicle, Height of the centre of gravity"),
+        *("Sensor 2: body_fr, Position", "Sensor 3: body_rl, Position"),
+        *("Load 2: loaded", "Load 3: guests", "Load 4: none"),
+        *("Drop 2: b.csv", "Drop 2: b.csv, Recording"),  # end before start: a problem of no single field
+    ]
+
+
+def test_totals_and_pieces_of_a_load_take_the_place_of_what_marks_that_the_others_are_missing(path: Path) -> None:
+    values = {"load__0__added__mass__value": "100", "load__0__added__I_yy": "57,5", "load__1__added__mass__value": "3"}
+    view = viewed(LOADS, path, **values)
+    assert tomllib.loads(view["text"])["load"] == [
+        {"name": "loaded", "added": {"mass": 100, "I_yy": 57.5}},
+        {"name": "guests", "added": {"mass": 3}},
+        {"name": "none"},
+    ]
+    assert [each["text"] for each in view["form"]["where"]] == ["Load 3: none"]
+    back = viewed(view["text"], path, load__0__added__mass__value="", load__0__added__I_yy="")
+    assert tomllib.loads(back["text"])["load"][0] == {"name": "loaded"}  # no load of 0 kg
+    for load in ("load.0", "load.1"):
+        (description,) = (
+            viewed(LOADS, path, f"add item {load}")["text"].split("[[load]]")[int(load[-1]) + 1].splitlines()[2:]
+        )
+        assert description.startswith('items = [{ mass = "TODO: kg"')
+    both = viewed(apply_action(LOADS, "add item load.0"), path, load__0__items__0__mass__value="5")["text"]
+    both = viewed(both, path, load__0__added__mass__value="100")["text"]
+    assert tomllib.loads(both)["load"][0].keys() == {"name", "items", "added"}  # a piece that was entered stays
+
+
+def test_what_may_remain_unknown_can_be_left_out(path: Path) -> None:
+    text = '[known]\ntotal_mass = "TODO: kg, on the scales: a number or { value = ... }; or remove this line"\n'
+    text += "[[sensor]]\nchannel = 'a'\nhigh_pass = 'TODO: Hz; remove the line if it has none, or it is not known'\n"
+    form = form_of(text, path)
+    left_out = {each.name: each.missing for each in form.fields() if each.may_be_left_out}
+    assert left_out == {"known.total_mass": "kg, on the scales", "sensor.0.high_pass": "Hz"}
+    for name in left_out:
+        text = apply_action(text, f"remove {name}")
+    assert "TODO" not in text
+    assert not field(form_of(text, path), "known.total_mass").stated  # it can still be entered

@@ -5,21 +5,25 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from sprung.app.form_fields import ENTRIES, Kind, Spec, is_used, restricted, section_specs
+from sprung.app.form_marks import Marks, marks_of, name_of
 from sprung.app.toml_spans import Place, entries_by_place, scan
-from sprung.campaign import CheckedDocument, check_document, find_placeholders
+from sprung.campaign import CheckedDocument, check_document
 from sprung.errors import Problem
 from sprung.vehicle import LAYOUTS
 
 MANY = 60
 """Number of entries of a kind beyond which seldom used keys are shown only where they are stated: a form has a largest size."""
 
-_WHERE = re.compile(r"^[^:]+: (\w+(?:\[\d+\])?(?:\.\w+(?:\[\d+\])?)*)")
-"""The place in a problem, as `sprung.campaign` writes it: ``campaign.toml: sensor[3].position (body_rl)``."""
+_LOAD = "the pieces of this load (Add an item), or its totals (More)"
+"""What is missing of a load: a form has no notation to explain."""
+
+_REMOVABLE = re.compile(r"; (?:or )?remove (?:this|the) line.*")
+"""What a placeholder says where it may also be removed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,6 +65,8 @@ class Field:
         Those of several words that are stated, or meant where nothing is.
     missing
         What is still to be written there; empty where nothing is missing.
+    may_be_left_out
+        Whether what is missing may also remain unknown.
     problems
         What is wrong with it.
     stated
@@ -76,6 +82,7 @@ class Field:
     choices: tuple[str, ...] = ()
     chosen: tuple[str, ...] = ()
     missing: str = ""
+    may_be_left_out: bool = False
     problems: tuple[Problem, ...] = ()
     stated: bool = False
     is_table: bool = False
@@ -107,7 +114,7 @@ class Group:
         In their usual order.
     items
         Of a load.
-    problems
+    problems, gaps
         That belong to no field of it.
     """
 
@@ -117,6 +124,7 @@ class Group:
     fields: tuple[Field, ...]
     items: tuple[Group, ...] = ()
     problems: tuple[Problem, ...] = ()
+    gaps: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,11 +138,13 @@ class CampaignForm:
     problems
         That belong to none of them.
     missing
-        Number of gaps without which nothing can be identified.
+        Number of fields and groups with a gap without which nothing can be identified.
     faulty
         Number of all problems.
     addable
         Known quantities that the form does not show yet: name and label.
+    placeholders
+        Places of the texts that stand for what is missing.
     """
 
     groups: tuple[Group, ...]
@@ -142,6 +152,7 @@ class CampaignForm:
     missing: int
     faulty: int
     addable: tuple[tuple[str, str], ...] = ()
+    placeholders: frozenset[Place] = frozenset()
 
     def fields(self) -> Iterator[Field]:
         """Yield all fields."""
@@ -149,29 +160,6 @@ class CampaignForm:
             yield from group.fields
             for item in group.items:
                 yield from item.fields
-
-
-@dataclass
-class _Marks:
-    """What is said of places, until a field takes it."""
-
-    problems: dict[str, list[Problem]] = field(default_factory=dict)
-    keys: dict[tuple[str, str], dict[str, None]] = field(default_factory=dict)
-    missing: dict[str, str] = field(default_factory=dict)
-    general: list[Problem] = field(default_factory=list)
-
-    def take_within(self, name: str) -> tuple[Problem, ...]:
-        """Return the problems of a place and of everything in it that no field has, once."""
-        section, index, *_ = f"{name}.".split(".")
-        inside = [key for key in self.keys.get((section, index), ()) if f"{key}.".startswith(f"{name}.")]
-        return tuple(problem for key in inside for problem in self.problems.pop(key, ()))
-
-    def add(self, name: str, problem: Problem) -> None:
-        """Add a problem of a place."""
-        section, index, *_ = f"{name}.".split(".")
-        for start in ((section, ""), (section, index)):
-            self.keys.setdefault(start, {})[name] = None
-        self.problems.setdefault(name, []).append(problem)
 
 
 def campaign_form(text: str, path: Path) -> tuple[CampaignForm, CheckedDocument]:
@@ -192,59 +180,20 @@ def campaign_form(text: str, path: Path) -> tuple[CampaignForm, CheckedDocument]
     text = text.removeprefix("\ufeff")
     document = tomllib.loads(text)
     checked = check_document(document, path)
-    absent = _absent_files(document, path)
-    marks = _marks(document, checked, absent)
-    values = {place: text[value.start : value.end] for place, value in entries_by_place(scan(text)).items()}
+    marks = marks_of(document, checked, path)
+    values = {
+        place: "" if place in marks.placeholders else text[value.start : value.end]
+        for place, value in entries_by_place(scan(text)).items()
+    }
+    faulty = len(marks.general) + sum(map(len, marks.problems.values()))
     groups = tuple(_groups(document, values, marks))
     left = [problem for problems in marks.problems.values() for problem in problems]
-    faulty = len(checked.problems) + len(absent)
     shown = {each.place[1] for group in groups if group.section == "known" for each in group.fields}
     addable = tuple((spec.key, spec.label) for spec in section_specs("known") if spec.key not in shown)
-    missing = sum(entry.needed for entry in checked.missing)
-    return CampaignForm(groups, (*marks.general, *left), missing, faulty, addable), checked
-
-
-def _marks(document: Mapping[str, Any], checked: CheckedDocument, absent: Mapping[str, Problem]) -> _Marks:
-    marks = _Marks()
-    for problem in checked.problems:
-        found = _WHERE.match(problem.where)
-        if found is None:
-            marks.general.append(problem)
-        else:
-            marks.add(_name_of(found[1]), problem)
-    for name, problem in absent.items():
-        marks.add(name, problem)
-    for entry in checked.missing:
-        found = _WHERE.match(entry.problem.where)
-        if found is not None:
-            marks.missing[_name_of(found[1])] = entry.problem.expected
-    for place, what in find_placeholders(document):
-        # A form has no notation to explain.
-        marks.missing[name_of(place)] = re.sub(r": a number or \{.*|; or remove (?:this|the) line.*", "", what)
-    return marks
-
-
-def _absent_files(document: Mapping[str, Any], path: Path) -> dict[str, Problem]:
-    """Return a problem for each recording that is not beside the campaign file."""
-    found: dict[str, Problem] = {}
-    drops = document.get("drop")
-    for index, drop in enumerate(drops if isinstance(drops, list) else ()):
-        file = drop.get("file") if isinstance(drop, dict) else None
-        if isinstance(file, str) and not file.startswith("TODO:") and not (path.parent / file).is_file():
-            where, do = f"{path.name}: drop[{index + 1}].file", "Correct the name, or put the recording there."
-            problem = Problem(where, f"'{file}', which is not there", "a recording beside the campaign file", do)
-            found[f"drop.{index}.file"] = problem
-    return found
-
-
-def name_of(place: Place) -> str:
-    """Return a place as the name of a field: ``sensor.2.position``, counting from 0."""
-    return ".".join(map(str, place))
-
-
-def _name_of(where: str) -> str:
-    """Return the name of a field from a place that counts from 1: ``sensor[3].position``."""
-    return re.sub(r"\[(\d+)\]", lambda match: f".{int(match[1]) - 1}", where)
+    parts = [part for group in groups for part in (group, *group.items)]
+    missing = sum(bool(part.gaps) + sum(bool(each.missing) for each in part.fields) for part in parts)
+    form = CampaignForm(groups, (*marks.general, *left), missing, faulty, addable, frozenset(marks.placeholders))
+    return form, checked
 
 
 @dataclass(frozen=True)
@@ -252,12 +201,12 @@ class _Source:
     """What the fields are filled from: values as written, what is said of them, and the words that are possible."""
 
     values: Mapping[Place, str]
-    marks: _Marks
+    marks: Marks
     wheels: Sequence[str]
     loads: Sequence[str]
 
 
-def _groups(document: Mapping[str, Any], values: Mapping[Place, str], marks: _Marks) -> Iterator[Group]:
+def _groups(document: Mapping[str, Any], values: Mapping[Place, str], marks: Marks) -> Iterator[Group]:
     model = _table(document.get("vehicle")).get("model", "full")
     wheels = LAYOUTS[model if model in LAYOUTS else "full"].wheels
     source = _Source(values, marks, wheels, ["empty", *_load_names(document)])
@@ -303,7 +252,10 @@ def _group(
         _group((*place, "items", index), "item", f"Item {index + 1}", _table(item), source)
         for index, item in enumerate(listed if isinstance(listed, list) else ())
     )
-    return Group(name_of(place), section, title, fields, items, source.marks.take_within(name_of(place)))
+    problems, gaps = source.marks.take_within(name_of(place))
+    if section == "load" and gaps:
+        gaps = (_LOAD,)
+    return Group(name_of(place), section, title, fields, items, problems, tuple(map(_in_a_form, gaps)))
 
 
 def _field(group: Place, spec: Spec, entry: Mapping[str, Any], source: _Source) -> Field:
@@ -312,7 +264,8 @@ def _field(group: Place, spec: Spec, entry: Mapping[str, Any], source: _Source) 
     node: Any = entry
     for key in spec.key.split("."):
         node = _table(node).get(key)
-    missing = source.marks.missing.get(name, "")
+    problems, gaps = source.marks.take_within(name)
+    missing = "; ".join(gaps)
     node = None if isinstance(node, str) and node.startswith("TODO:") else node
     chosen: tuple[str, ...] = ()
     if spec.kind == "several":
@@ -337,11 +290,17 @@ def _field(group: Place, spec: Spec, entry: Mapping[str, Any], source: _Source) 
         tuple(_parts(place, spec, node, source.values)),
         choices,
         chosen,
-        missing,
-        source.marks.take_within(name),
+        _in_a_form(missing),
+        _REMOVABLE.search(missing) is not None,
+        problems,
         is_used(spec.key, entry),
         isinstance(node, dict),
     )
+
+
+def _in_a_form(missing: str) -> str:
+    """Return what is missing without the notation of a file, which a form does without."""
+    return re.sub(r": a number or \{.*", "", _REMOVABLE.sub("", missing))
 
 
 def _parts(place: Place, spec: Spec, node: Any, values: Mapping[Place, str]) -> Iterator[Part]:

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from sprung.app.campaign_text import Change, apply_changes, quoted
+from sprung.app.load_description import superseded
 from sprung.campaign import placeholder
 from sprung.errors import InputError, Problem
 
@@ -49,7 +50,9 @@ def apply_action(text: str, action: str) -> str:
         number = len(entries) if isinstance(entries, list) else 0
         return apply_changes(text, [Change((kind, number), _new(kind, rest, entries))])
     if verb == "add" and kind == "item":
-        return apply_changes(text, [_new_item(document, rest)])
+        change = _new_item(document, rest)
+        text = apply_changes(text, [change])
+        return apply_changes(text, superseded(tomllib.loads(text.removeprefix("\ufeff")), [change]))
     if verb == "add" and kind == "known" and rest:
         return apply_changes(
             text, [Change(("known", rest), quoted(placeholder("a value, or a value and its uncertainty")))]

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import datetime as dt
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from sprung.app.campaign_form import CampaignForm, Field, Group
 from sprung.app.campaign_text import Change, quoted
 from sprung.app.decimals import number_literal
+from sprung.app.toml_spans import Place
 from sprung.errors import Problem
 
 _DATE = re.compile(r"(\d{4})-(\d{1,2})-(\d{1,2})|(\d{1,2})\.\s*(\d{1,2})\.\s*(\d{4})")
@@ -63,7 +64,19 @@ def understand(form: CampaignForm, entered: Mapping[str, Sequence[str]]) -> Ente
                 changes += _changes(each, [value.strip() for value in given if value is not None])
         except _NotUnderstoodError as error:
             problems[str(error)] = error.problem
-    return Entered(tuple(changes), problems)
+    return Entered(tuple(_without_placeholders(changes, form.placeholders)), problems)
+
+
+def _without_placeholders(changes: Sequence[Change], placeholders: Collection[Place]) -> Iterator[Change]:
+    """Yield changes, and before the first one within a text that stands for what is missing the removal of that text."""
+    removed: set[Place] = set()
+    for change in changes:
+        around = (change.place[:depth] for depth in range(1, len(change.place)))
+        for place in around:
+            if place in placeholders and place not in removed:
+                removed.add(place)
+                yield Change(place, None)
+        yield change
 
 
 def _last(entered: Mapping[str, Sequence[str]], name: str) -> str | None:

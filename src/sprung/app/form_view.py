@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict
 from functools import cache
 from pathlib import Path
 from typing import Any
 
 from sprung.app.campaign_form import CampaignForm, Field, Group, campaign_form
-from sprung.app.campaign_text import apply_changes
+from sprung.app.campaign_text import Change, apply_changes
 from sprung.app.form_actions import apply_action
 from sprung.app.form_changes import understand, with_problems
 from sprung.app.form_fields import Spec
+from sprung.app.load_description import superseded
 from sprung.campaign import Campaign, parse_toml
 from sprung.errors import InputError, record_failure
 from sprung.report import sketch_svg, vehicle_sketch
@@ -57,11 +58,10 @@ def form_view(
     if entered is not None:
         understood = understand(campaign_form(text, place)[0], entered)
         unclear = dict(understood.problems)
-        for change in understood.changes:
-            try:
-                text = apply_changes(text, [change])
-            except InputError as error:  # an entry that is written in a way that only its author can change
-                refused += [str(problem) for problem in error.problems]
+        text, refused = _with(text, understood.changes)
+        needless = tuple(superseded(parse_toml(text.removeprefix("\ufeff"), place), understood.changes))
+        text, refused_too = _with(text, needless)
+        refused += refused_too
     if action and not unclear:
         text = apply_action(text, action)
     form, checked = campaign_form(text, place)
@@ -74,6 +74,17 @@ def form_view(
         "refused": refused,
         "sketch": sketch(checked.campaign),
     }
+
+
+def _with(text: str, changes: Iterable[Change]) -> tuple[str, list[str]]:
+    """Return a text with those changes that can be made, and why the others cannot."""
+    refused: list[str] = []
+    for change in changes:
+        try:
+            text = apply_changes(text, [change])
+        except InputError as error:  # an entry that is written in a way that only its author can change
+            refused += [str(problem) for problem in error.problems]
+    return text, refused
 
 
 def text_view(path: str, text: str) -> dict[str, Any]:
@@ -93,10 +104,10 @@ def text_view(path: str, text: str) -> dict[str, Any]:
     """
     parse_toml(text.removeprefix("\ufeff"), Path(path))
     form, checked = campaign_form(text, Path(path))
-    problems = [*form.problems, *(problem for group in form.groups for problem in group.problems)]
+    problems = list(form.problems)
     for group in form.groups:
         for part in (group, *group.items):
-            problems += [problem for each in part.fields for problem in each.problems]
+            problems += [*part.problems, *(problem for each in part.fields for problem in each.problems)]
     missing = [asdict(entry.problem) for entry in checked.missing]
     return {"problems": [asdict(problem) for problem in problems], "missing": missing}
 
@@ -131,7 +142,24 @@ def _document(form: CampaignForm) -> dict[str, Any]:
         "missing": form.missing,
         "faulty": form.faulty,
         "addable": form.addable,
+        "where": list(_where(form)),
     }
+
+
+def _where(form: CampaignForm) -> Iterator[dict[str, str]]:
+    """Yield every place with a problem or a gap: the id of an element of the page, and its name."""
+    for group in form.groups:
+        for part in (group, *group.items):
+            title = group.title if part is group else f"{group.title}, {part.title}"
+            if part.problems or part.gaps:
+                yield {"id": f"problem-{part.name}", "text": title}
+            for each in part.fields:
+                if each.problems or each.missing:
+                    yield {"id": _first_input(each), "text": f"{title}, {each.spec.label}"}
+
+
+def _first_input(each: Field) -> str:
+    return next((part.name for part in each.parts), each.name)
 
 
 def _group_document(group: Group) -> dict[str, Any]:
@@ -142,6 +170,7 @@ def _group_document(group: Group) -> dict[str, Any]:
         "fields": [_field_document(each) for each in group.fields],
         "items": [_group_document(item) for item in group.items],
         "problems": [asdict(problem) for problem in group.problems],
+        "gaps": group.gaps,
     }
 
 
@@ -153,6 +182,7 @@ def _field_document(each: Field) -> dict[str, Any]:
         "choices": each.choices,
         "chosen": each.chosen,
         "missing": each.missing,
+        "may_be_left_out": each.may_be_left_out,
         "problems": [asdict(problem) for problem in each.problems],
         "stated": each.stated,
         "folded": each.is_folded,

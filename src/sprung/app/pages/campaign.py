@@ -87,19 +87,18 @@ async def live(request: Request) -> Response:
     groups = {}
     for group in view["form"]["groups"]:
         for part in (group, *group["items"]):
-            groups[part["name"]] = [sentence(problem) for problem in part["problems"]]
+            groups[part["name"]] = {"problems": [*map(group_sentence, part["problems"])], "gaps": part["gaps"]}
             for each in part["fields"]:
                 if each["problems"] or each["missing"]:
-                    problems = [sentence(problem) for problem in each["problems"]]
                     fields[each["name"]] = {
-                        "problems": problems,
+                        "problems": [*map(sentence, each["problems"])],
                         "missing": each["missing"],
-                        "label": each["spec"]["label"],
                     }
     return JSONResponse(
         {
             "fields": fields,
             "groups": groups,
+            "where": view["form"]["where"],
             "general": [*map(sentence, view["form"]["problems"]), *view["refused"]],
             "state": state_sentence(view["form"]["faulty"], view["form"]["missing"]),
             "sketch": view["sketch"],
@@ -192,6 +191,7 @@ def _form_page(
         refused=view["refused"],
         sketch={**view["sketch"], "drawings": drawings},
         sentence=sentence,
+        group_sentence=group_sentence,
         state=state_sentence(view["form"]["faulty"], view["form"]["missing"]),
         focus=focus,
         problems=problems,
@@ -291,6 +291,11 @@ def _focus(action: str, view: Mapping[str, Any]) -> str:
 def sentence(problem: Mapping[str, str]) -> str:
     """Return a problem beside its field as a sentence."""
     return f"Found {problem['found']}; expected {problem['expected']}. {problem['do']}"
+
+
+def group_sentence(problem: Mapping[str, str]) -> str:
+    """Return a problem of several fields together as a sentence: what they say is seen, not found as a table of the file."""
+    return problem["do"] if problem["found"].startswith("{") else sentence(problem)
 
 
 def state_sentence(problems: int, gaps: int) -> str:

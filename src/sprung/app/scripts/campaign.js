@@ -36,7 +36,12 @@ async function ask() {
 function show(found) {
   document.querySelector("#state").textContent = found.state;
   document.querySelector("#general").replaceChildren(...listOf(found.general));
-  for (const list of form.querySelectorAll("[data-group]")) list.replaceChildren(...listOf(found.groups[list.dataset.group] ?? []));
+  for (const list of form.querySelectorAll("[data-group]")) list.replaceChildren(...listOf(found.groups[list.dataset.group]?.problems ?? []));
+  for (const gap of form.querySelectorAll("[data-group-gap]")) {
+    const gaps = found.groups[gap.dataset.groupGap]?.gaps ?? [];
+    gap.hidden = !gaps.length;
+    gap.textContent = `To be filled in: ${gaps.join("; ")}`;
+  }
   for (const field of form.querySelectorAll("[data-field]")) {
     const own = found.fields[field.dataset.field];
     const problems = own?.problems ?? [];
@@ -48,12 +53,11 @@ function show(found) {
     field.querySelectorAll("[aria-invalid]").forEach((input) => input.setAttribute("aria-invalid", String(problems.length > 0)));
     if (problems.length || own?.missing) field.closest("details.more")?.setAttribute("open", "");
   }
-  const where = Object.entries(found.fields).map(([name, each]) => {
+  const where = found.where.map((each) => {
     const line = document.createElement("li");
     const link = document.createElement("a");
-    link.href = `#${firstInput(name)?.id ?? ""}`;
-    const group = byData("field", name)?.closest("fieldset")?.querySelector("legend")?.textContent;
-    link.textContent = [group, each.label].filter(Boolean).join(", ");
+    link.href = `#${each.id}`;
+    link.textContent = each.text;
     line.append(link);
     return line;
   });
@@ -63,8 +67,6 @@ function show(found) {
   changed = found.diff.length > 0;
   sketch.replace(found.sketch);
 }
-
-const firstInput = (name) => byData("field", name)?.querySelector("input:not([type=hidden]), select, textarea");
 
 form.addEventListener("input", () => { changed = true; check(); });
 form.addEventListener("submit", (event) => {
