@@ -25,7 +25,7 @@ def judged(made: Campaign, contradicting: int = 0) -> Verdict:
     choice, decays = choose_structure(made), prepare(made).decays
     optimum = fit_linear(decays, choice.linear_models, made.sensors, choice.known, start=TABLE_1_CAR.parameters)
     fit, channels = uncertainty_of(optimum), [sensor.channel for sensor in made.sensors]
-    motions = body_motions(fit, decays, optimum.fitted, made.sensors)
+    motions = body_motions(optimum, decays, optimum.fitted, made.sensors)
     drops = cross_validate_drops(optimum, fit, decays, channels, motions)
     return decide_verdict(
         fit,

@@ -66,7 +66,7 @@ def assess(run: Analysis, progress: Progress) -> Analysis:
     estimates = to_estimates(fit, structure.known)
     misfit = estimate_model_error(optimum)
     fitted = optimum.fitted
-    motions = body_motions(statistics, decays, fitted, campaign.sensors)
+    motions = body_motions(optimum, decays, fitted, campaign.sensors)
     validated = cross_validate_drops(optimum, fit, decays, channels, motions)
     contradicting = sum(any(fault.code in CONTRADICTING for fault in faults) for _, faults in run.prepared.left_out)
     reasons = [fault.what for fault in suspected]
@@ -91,10 +91,7 @@ def assess(run: Analysis, progress: Progress) -> Analysis:
         scale=scale_of(fit),
         unidentifiable=unidentifiable_combinations(fit, estimates),
         correlation=correlation_of(fit, estimates),
-        modes={
-            load: () if rejected else mode_estimates(fit, structure.linear_models[load], campaign.sensors)
-            for load in loads
-        },
+        modes={load: () if rejected else mode_estimates(fit, structure.linear_models[load]) for load in loads},
         sensors=_sensor_estimates(statistics, structure.sensors),
         additional_terms="" if rejected else _additional_terms(structure, fit),
         curves={} if rejected else _curves_of(structure, fit, optimum),

@@ -156,6 +156,6 @@ def with_amplitudes(run: Analysis, progress: Progress = silent) -> Result:
     omissions = list(result.omissions)
     amplitudes: tuple[ModeAmplitude, ...] = ()
     with record_failure(omissions, "The amplitude curves"):
-        motions = body_motions(run.uncertainty, run.decays, run.fit.fitted, run.campaign.sensors)
+        motions = body_motions(run.fit, run.decays, run.fit.fitted, run.campaign.sensors)
         amplitudes = amplitudes_of(run, motions, progress)
     return replace(result, amplitude=amplitudes, omissions=tuple(omissions))

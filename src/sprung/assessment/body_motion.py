@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from sprung.assessment.residuals import estimate_noise_level
 from sprung.display import shown
-from sprung.estimation import FitStatistics
+from sprung.estimation import FitResult, FitStatistics
 from sprung.preprocess import FreeDecay
 from sprung.vehicle import FULL, Readout, Sensor, layout_of, wheelbase_of
 
@@ -88,7 +88,7 @@ class BodyMotion:
 
 
 def body_motions(
-    fit: FitStatistics, decays: Sequence[FreeDecay], fitted: Sequence[Real], sensors: Sequence[Sensor]
+    fit: FitResult, decays: Sequence[FreeDecay], fitted: Sequence[Real], sensors: Sequence[Sensor]
 ) -> tuple[BodyMotion, ...]:
     """Compute the motion of the body from its sensors, measured and simulated.
 
@@ -108,7 +108,7 @@ def body_motions(
     tuple of BodyMotion
         One for each drop.
     """
-    rows, noise = body_rows(fit, sensors), estimate_noise_level(fit, decays)
+    rows, noise = body_rows(fit, sensors), estimate_noise_level(fit)
     at_rest = sum(decay.rest.noise.shape[1] for decay in decays)
     known_from = float(at_rest or sum(decay.samples for decay in decays))
     # Drops usually have all their channels, and then one inverse.
@@ -134,7 +134,7 @@ def body_motions(
     return tuple(motions)
 
 
-def body_rows(fit: FitStatistics, sensors: Sequence[Sensor]) -> Real:
+def body_rows(fit: FitResult | FitStatistics, sensors: Sequence[Sensor]) -> Real:
     """Return the reading of each sensor per vertical, pitch and roll acceleration, shape (channel, 3).
 
     Zero on wheels, for what is no accelerometer, and for a motion that the vehicle has not.

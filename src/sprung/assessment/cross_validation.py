@@ -97,7 +97,7 @@ def cross_validate_drops(
     weights, validations = optimum.weights, {}
     # Coloured noise is less informative; a disagreement of the drops is what is to be detected here, so that it does not count.
     coloured = fit.inflation if fit.inflated_by == "coloured residuals" else 1.0
-    noise = estimate_noise_level(fit, decays)
+    noise = estimate_noise_level(optimum)
     free = len(state_variables(fit.names))  # a drop's initial state takes up as many samples of noise
     observations = optimum.problem.objective.observations
     of_drops = zip(

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from scipy.fft import irfft, next_fast_len, rfft
 
 from sprung.display import shown
-from sprung.estimation import FitStatistics
-from sprung.preprocess import FreeDecay, estimate_sensor_noise
+from sprung.estimation import FitResult, FitStatistics
+from sprung.preprocess import FreeDecay
 
 Real = NDArray[np.float64]
 
@@ -44,22 +44,20 @@ class ResidualStatistics:
     colour: float
 
 
-def estimate_noise_level(fit: FitStatistics, decays: Sequence[FreeDecay]) -> Real:
+def estimate_noise_level(fit: FitResult) -> Real:
     """Estimate the noise level of each sensor: at rest where a recording shows it, at most that of the residuals.
 
     Parameters
     ----------
     fit
         The fit.
-    decays
-        What was fitted.
 
     Returns
     -------
     ndarray
         m/s² root-mean-square, shape (channel,).
     """
-    noise = estimate_sensor_noise(decays, fit.residual_moments)
+    noise = fit.sensor_noise
     at_rest = np.where((noise.samples > 0) & (noise.variance > 0), np.sqrt(noise.variance + noise.added), np.inf)
     return np.minimum(at_rest, fit.noise)
 

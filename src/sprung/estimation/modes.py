@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,11 +13,9 @@ from sprung.estimation.statistics import FitStatistics
 from sprung.vehicle import (
     LinearModel,
     Readout,
-    Sensor,
     coordinates,
     differentiate_tyre_rates_at_rest,
     layout_of,
-    wheelbase_of,
     with_tyre_rates_at_rest,
 )
 from sprung.vibration import Mode, is_vibration, largest_entry, name_modes, paper_name
@@ -69,7 +66,7 @@ class ModeEstimate:
     paper_name: str | None = None
 
 
-def mode_estimates(fit: FitStatistics, model: LinearModel, sensors: Sequence[Sensor]) -> tuple[ModeEstimate, ...]:
+def mode_estimates(fit: FitStatistics, model: LinearModel) -> tuple[ModeEstimate, ...]:
     """Return the modes of one load with their uncertainties, lowest frequency first.
 
     Parameters
@@ -78,20 +75,18 @@ def mode_estimates(fit: FitStatistics, model: LinearModel, sensors: Sequence[Sen
         The fit.
     model
         Equations of motion with the load.
-    sensors
-        The sensors.
 
     Returns
     -------
     tuple of ModeEstimate
     """
-    readout = Readout.of(sensors, fit.names, wheelbase_of(fit.names, fit.values))
+    no_sensors = Readout.of((), fit.names)
     values, by_parameter = (
         with_tyre_rates_at_rest(model, fit.values),
         differentiate_tyre_rates_at_rest(model, fit.values),
     )
-    modes = solve_modes(model, readout, values)
-    slopes = by_parameter.T @ differentiate_modes(model, readout, values, modes, 1.0)[0] * fit.slopes[:, None]
+    modes = solve_modes(model, no_sensors, values)
+    slopes = by_parameter.T @ differentiate_modes(model, no_sensors, values, modes, 1.0)[0] * fit.slopes[:, None]
     # Along a direction that nothing determines a first-order uncertainty may say too little: the poles are followed there.
     away = [
         np.linalg.eigvals(model.matrices(with_tyre_rates_at_rest(model, fit.moved(way * direction))).state).astype(

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import Literal
 
 import numpy as np
@@ -16,7 +15,7 @@ from sprung.estimation.linear_fit import STARTS, escape_local_optimum, fit_linea
 from sprung.estimation.priors import scaling_direction
 from sprung.estimation.problem import NO_INFORMATION, RANK
 from sprung.estimation.subspace import canonical_basis
-from sprung.preprocess import FreeDecay, Moments, pool_moments
+from sprung.preprocess import FreeDecay
 from sprung.uncertainty import KnownValue
 from sprung.vehicle import LinearModel, Sensor, is_of_sensor, parameter_of
 
@@ -101,11 +100,6 @@ class FitStatistics:
     starts: int
     inflated_by: Inflater = "nothing"
     most_coloured: int | None = None
-
-    @cached_property
-    def residual_moments(self) -> Moments:
-        """Variance and covariance of neighbours of the residuals of each channel; see `pool_moments`."""
-        return pool_moments(self.residuals)
 
     def moved(self, step: Real) -> Real:
         """Return parameter values, SI, a step of the coordinates away, shape (parameter,)."""

@@ -129,7 +129,7 @@ def validate(
     """
     run = identify_campaign(campaign, tracks=tracks, extras=extras, progress=progress)
     result = with_amplitudes(run, progress)
-    motions = body_motions(run.uncertainty, run.decays, run.fit.fitted, run.campaign.sensors)
+    motions = body_motions(run.fit, run.decays, run.fit.fitted, run.campaign.sensors)
     motions = tuple(motion for motion, decay in zip(motions, run.decays, strict=True) if not decay.pads)
     amplitudes = result.amplitude
     return Validation(result, motions, amplitudes[0].load if amplitudes else EMPTY.name, amplitudes)
