@@ -10,6 +10,7 @@ from sprung.analysis.baseline import converged
 from sprung.analysis.first_term import explaining_term
 from sprung.analysis.on_pads import suspect_sensor
 from sprung.analysis.settling import settle_corrections
+from sprung.analysis.terms import select_finite_rotation
 from sprung.campaign import Campaign
 from sprung.estimation import NEAR, FitResult
 from sprung.faults import (
@@ -38,10 +39,13 @@ def isolate_evident_faults(run: Analysis, progress: Progress) -> Analysis:
     if first is not None:
         return replace(run, first_term=first[0]).noted("isolate_evident_faults", f"{first[0]} is tried first", first[1])
     run = _with_isolated(run, consistency, progress)
-    found = run.found
-    if not _explains(found) or any(one.remedy == "named" or not one.is_specific for one in found):
+    if not _is_evident(run.found):
         return run
-    return _corrected(run, found, "isolate_evident_faults")
+    # Every real vehicle turns by finite angles: drops in which it rolls far differ from all others without any fault.
+    turned = select_finite_rotation(run, progress)
+    if turned.fit is not run.fit:
+        run = _with_isolated(turned, _consistency(turned), progress)
+    return _corrected(run, run.found, "isolate_evident_faults") if _is_evident(run.found) else run
 
 
 def isolate_faults(run: Analysis, progress: Progress) -> Analysis:
@@ -66,6 +70,11 @@ def _consistency(run: Analysis) -> Consistency | None:
 def _explains(hypotheses: Sequence[Hypothesis]) -> bool:
     """Whether hypotheses that were isolated one after the other explain the recordings wholly."""
     return bool(hypotheses) and (hypotheses[-1].candidate.is_explained or hypotheses[-1].is_sufficient)
+
+
+def _is_evident(hypotheses: Sequence[Hypothesis]) -> bool:
+    """Whether hypotheses explain the recordings wholly, and say what is to be done."""
+    return _explains(hypotheses) and all(one.remedy != "named" and one.is_specific for one in hypotheses)
 
 
 def _with_isolated(run: Analysis, consistency: Consistency | None, progress: Progress) -> Analysis:
