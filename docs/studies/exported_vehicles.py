@@ -40,6 +40,7 @@ VEHICLES: Mapping[str, Vehicle] = {
     "friction": _car(**_RUBBING),
     "front-friction": _car(F_f=60.0, s_f=2e5),
     "load-friction": _car(**_RUBBING, **_both(u_=0.05)),
+    "uneven-friction": _car(**_RUBBING, d_Ff=25.0, d_Fr=-15.0),
     "rebound": _car(**_both(r_=1.8)),
     "curve": _car(**_both(r_=1.8), **_KNEES),
     "rounded": _car(**_KNEES, **_both(w_k=0.03)),

@@ -1,5 +1,6 @@
 """Campaigns of a part of a vehicle: quarter cars and vehicles in the pitch or the roll plane."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,7 @@ from parts_of_a_vehicle import PITCH_PLANE as PITCH_CAR
 
 import sprung
 from sprung.errors import InputError
+from sprung.uncertainty import KnownValue
 from sprung.vehicle import Vehicle, terms_of
 from vehicle.test_layouts import PARTS, PITCH_PLANE, QUARTER, ROLL_PLANE
 
@@ -20,7 +22,11 @@ WITH_TERMS = (
     ROLL_PLANE.with_values(y_s=0.02, d_ks=400.0, d_kt=2500.0, d_cs=30.0),
     PITCH_PLANE.with_values(m_e=60.0, k_e=60.0 * 75.0**2, c_e=700.0, x_e=0.1),
 )
-WITH_CURVES = (QUARTER.with_values(F=25.0, s=2e5, r=1.6), ROLL_PLANE.with_values(v_k=0.12, q=0.5))
+WITH_CURVES = (
+    QUARTER.with_values(F=25.0, s=2e5, r=1.6),
+    ROLL_PLANE.with_values(v_k=0.12, q=0.5),
+    ROLL_PLANE.with_values(F=60.0, s=2e5, d_F=25.0),
+)
 
 
 def simulated(vehicle: Vehicle, noise: float = 0.0, seed: int = 1) -> sprung.Campaign:
@@ -37,6 +43,26 @@ def test_without_noise_identification_returns_what_was_simulated(vehicle: Vehicl
     for name, value in vehicle.parameters.items():
         assert result.parameters[name].value == pytest.approx(value, rel=1e-6), name
     assert result.vehicle.layout == vehicle.layout
+
+
+def test_what_is_known_to_be_alike_on_both_sides_may_be_stated_as_zero() -> None:
+    """Exactly, or within an uncertainty: both agree with the recordings, and a centre of gravity that is 20 mm off does not."""
+    vehicle = ROLL_PLANE.with_values(y_s=0.0, d_ks=0.0, d_kt=0.0, d_cs=60.0)
+    campaign = sprung.simulate(vehicle, noise=0.02, seed=1)
+    for y_s, faults in ((0.0, []), (0.02, ["known"])):
+        values = {"m_s": (600.0, 0.0), "y_s": (y_s, 0.0), "d_ks": (0.0, 300.0), "d_kt": (0.0, 0.0)}
+        known = {name: KnownValue(*one) for name, one in values.items()}
+        result = sprung.identify(replace(campaign, known=known), extras=vehicle.extras, tracks="separate")
+        assert [fault.code for fault in result.faults] == faults
+        assert result.verdict.state == "accept"
+        found = result.parameters["d_cs"]
+        assert abs((found.value or 0.0) - 60.0) < 4 * (found.std or 0.0) < 4.0
+
+
+def test_a_known_difference_between_both_sides_may_be_negative(tmp_path: Path) -> None:
+    known = {"m_s": KnownValue(600.0), "y_s": KnownValue(-0.01, 0.005), "d_ks": KnownValue(-200.0)}
+    campaign = replace(simulated(ROLL_PLANE), known=known)
+    assert sprung.read(sprung.write(campaign, tmp_path / "campaign")).known == known
 
 
 @pytest.mark.long

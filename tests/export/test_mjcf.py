@@ -21,6 +21,7 @@ LACKING = {
     "front-friction": "F_f",
     "rubbing-heights": "F_f",
     "load-friction": "u_f",
+    "uneven-friction": "d_Ff",
     "rounded": "w_kf",
     "air": "e_f",
     "levelled-air": "e_lf",
@@ -79,6 +80,11 @@ def test_what_mujoco_lacks_is_refused_or_approximated(name: str) -> None:
 def test_friction_becomes_a_friction_loss() -> None:
     file = export.mjcf(case("friction")[0], approximate=True)
     assert file.text.count('frictionloss="60.0"') == 4
+
+
+def test_friction_of_each_side_becomes_a_friction_loss() -> None:
+    text = export.mjcf(case("uneven-friction")[0], approximate=True).text
+    assert [text.count(f'frictionloss="{friction}"') for friction in (85.0, 35.0, 45.0, 75.0)] == [1, 1, 1, 1]
 
 
 def test_the_control_of_a_tyre_is_the_road() -> None:

@@ -52,6 +52,14 @@ PHRASES: dict[str, tuple[dict[str, float], float, str]] = {
         2.0,
         "dry friction of 41 ± 2 N at each front wheel and 38 ± 2 N at each rear wheel",
     ),
+    "uneven-friction": (
+        {"d_Ff": 20.0, "d_Fr": -9.0},
+        1.0,
+        (
+            "dry friction of the left front wheel that is 20 ± 1 N above the mean of both sides "
+            "and -9 ± 1 N of the left rear wheel"
+        ),
+    ),
     "rebound": (
         {"r_f": 2.4, "r_r": 1.9},
         0.13,

@@ -50,6 +50,7 @@ CAR = Vehicle.from_parameters(
     | {"F_f": 100.0, "F_r": 130.0, "s_f": 2e5, "s_r": 3e5, "r_f": 2.0, "r_r": 1.5, "p_f": 3.0, "p_r": 1.0}
     | {"k_bf": 3e4, "k_br": 2e4, "x_bf": 0.01, "x_br": 0.015}
     | {"v_kf": 0.1, "v_kr": 0.15, "q_f": 0.4, "q_r": 0.6, "e_f": 6.0, "e_r": 4.0, "h_tf": 6.0, "h_tr": 4.0}
+    | {"d_Ff": 20.0, "d_Fr": -40.0}
     | {"u_f": 0.05, "u_r": 0.08, "v_2f": 0.25, "v_2r": 0.3, "q_2f": 0.7, "q_2r": 1.4}
     | {"v_3f": 0.5, "v_3r": 0.45, "q_3f": 0.5, "q_3r": 0.8}
     | {"w_kf": 0.03, "w_kr": 0.02, "e_lf": 5.0, "e_lr": 7.0, "g_f": 60.0, "g_r": 80.0}
@@ -120,7 +121,7 @@ def test_a_load_pushes_with_its_weight() -> None:
 @pytest.mark.parametrize(
     "extras",
     [
-        ("friction",), ("rebound",), ("friction", "rebound", "progressive"),
+        ("friction",), ("friction", "uneven-friction"), ("rebound",), ("friction", "rebound", "progressive"),
         ("damper-curve", "tyre-curve"), ("rebound", "damper-curve", "air", "bump-stop"),
         ("rebound", "damper-curve", "rounded-knee"),
         ("damper-curve", "second-knee", "third-knee"),
@@ -145,9 +146,10 @@ def test_against_another_solver(extras: tuple[str, ...]) -> None:
         for i, (kind, axle) in enumerate(zip(kinds, axles, strict=True)):
             own = of_axle[axle]
             x, v, k, c = travel[i], rate[i], own["k_s"], own["c_s"]
-            if kind == "friction":
+            if kind.startswith("friction"):
                 friction, stiffness, m = own["F_"], own["s_"], next(kept)
-                force[i] = friction * m
+                above = {"friction": 0.0, "friction left": own["d_F"], "friction right": -own["d_F"]}[kind]
+                force[i] = (friction + above) * m
                 grown.append((stiffness * v - stiffness * abs(v) * m) / friction)
             elif kind == "rebound":
                 force[i] = (own["r_"] - 1) * c * max(v, 0.0)

@@ -257,15 +257,12 @@ def _check_known(parsed: ParsedFile[CampaignFile], problems: Problems) -> dict[s
             do = did_you_mean(name, sorted(all_names(model)))
             problems.add(where, f"'{name}'", f'a quantity of a vehicle with model = "{model}"', do)
             continue
-        unit, describe_key, positive = "kg", name.replace("_", " "), True
+        unit, describe_key, positive, signed = "kg", name.replace("_", " "), True, False
         if name in PARAMETERS:
-            unit, describe_key, positive = (
-                PARAMETERS[name].unit,
-                PARAMETERS[name].meaning,
-                PARAMETERS[name].positive,
-            )
+            about = PARAMETERS[name]
+            unit, describe_key, positive, signed = about.unit, about.meaning, about.positive, about.signed
         limits = explain_implausible(name, measured.value)
-        if measured.value < 0 or (measured.value < SMALLEST and positive):
+        if (measured.value < 0 and not signed) or (measured.value < SMALLEST and positive):
             sign = "positive" if positive else "not negative"
             problems.add(where, f"{measured.value:g}", f"a {sign} number: the {describe_key} in {unit}", "Correct it.")
         elif limits is not None:

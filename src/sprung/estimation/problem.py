@@ -410,8 +410,8 @@ class EstimationProblem:
             # What the optimum still misses of an uncertain statement would be gained as well.
             missed, _ = without.residuals(iterate.u)
             gain += float(every @ every - missed @ missed)
-            away = self.priors.change(name, iterate.u, move) / known.value
-            if not known.is_exact or abs(away) > _EXACT_ENOUGH:
+            away = abs(self.priors.change(name, iterate.u, move))
+            if not known.is_exact or away > _EXACT_ENOUGH * abs(known.value):
                 found[name] = max(gain, 0.0) ** 0.5
         return found
 

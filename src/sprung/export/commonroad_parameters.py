@@ -26,6 +26,7 @@ _LACKING: Mapping[str, str] = {
     "seat-load": "loads as a part of a rigid body",
     "friction": "no dry friction",
     "load-friction": "no dry friction",
+    "uneven-friction": "no dry friction",
     "rebound": "the mean of compression and rebound",
     "damper-curve": "the damper rate before the knee",
     "rounded-knee": "the damper rate before the knee",

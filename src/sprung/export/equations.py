@@ -35,6 +35,9 @@ from sprung.vehicle import (
 
 Array = NDArray[np.float64]
 
+_SIDES = {"friction left": 1.0, "friction right": -1.0}
+"""Sides of the force laws of a friction that differs between left and right, by their names."""
+
 _TYRE_CURVE = "tyre-curve"
 """Name of the force law of a tyre whose rate grows with its deflection."""
 
@@ -60,6 +63,11 @@ class RowForce(NamedTuple):
     def law(self) -> str:
         """Name of the force law."""
         return self.element.law.name
+
+    @property
+    def side(self) -> float:
+        """Side of a friction that is one of two that differ, 1 on the left and -1 on the right; 0 for any other force."""
+        return _SIDES.get(self.law, 0.0)
 
     @property
     def knots_after(self) -> tuple[bool, bool]:

@@ -12,6 +12,8 @@ from sprung.vehicle import STATIONS
 _LAWS: Mapping[str, str] = {
     "friction": "FRICTION",
     "load-friction": "LOAD_FRICTION",
+    "friction left": "UNEVEN_FRICTION",
+    "friction right": "UNEVEN_FRICTION",
     "rebound": "REBOUND",
     "damper-curve": "DAMPER_CURVE",
     "progressive": "PROGRESSIVE",
@@ -101,10 +103,10 @@ def _force(force: RowForce, number: Mapping[str, int], memory: int) -> str:
     names = force.element.parameters
     has_ratio, is_rounded = force.knots_after
     listed = ", ".join(str(number[name]) for name in names)
-    weight = 0.0 if force.element.weight is None else force.element.weight
+    factor = force.side if force.element.weight is None else force.element.weight
     return (
         f"{{{_LAWS[force.law]}, {force.row}, {len(names)}, {{{listed}}}, {int(has_ratio)}, {int(is_rounded)}, {memory}, "
-        f"{force.offset!r}, {weight!r}}}"
+        f"{force.offset!r}, {factor!r}}}"
     )
 
 

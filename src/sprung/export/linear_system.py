@@ -37,6 +37,8 @@ Array = NDArray[np.float64]
 _LAW_NAMES = {
     "friction": "dry friction",
     "load-friction": "dry friction that grows with the load",
+    "friction left": "dry friction of the left wheels",
+    "friction right": "dry friction of the right wheels",
     "rebound": "dampers stiffer in rebound",
     "damper-curve": "damper curves with knees",
     "progressive": "progressive springs",

@@ -69,6 +69,8 @@ def law_expression(force: RowForce, position: int) -> str:
             return f"{parameters[0]}*memory{position}"
         case "load-friction":
             return product(force.element.weight or 0.0, parameters[0], f"memory{position}")
+        case "friction left" | "friction right":
+            return f"({parameters[1]} + {product(force.side, parameters[0])})*memory{position}"
         case "rebound":
             return _rebound(parameters, travel, rate)
         case "damper-curve":

@@ -165,7 +165,8 @@ def _derivatives(equations: Equations) -> Iterable[str]:
         force = equations.forces[i]
         limit, stiffness = force.element.parameters[-2:]
         # Without a force the memory has no effect, and would only shorten the steps of a solver.
-        length = f"(if {force.element.parameters[0]} > 0 then max({limit}/{stiffness}, 1e-7) else 1)"
+        factor = limit if force.side else force.element.parameters[0]
+        length = f"(if {factor} > 0 then max({limit}/{stiffness}, 1e-7) else 1)"
         moving = f"rate{force.row}"
         yield f"der(memory{i}) = ({moving} - abs({moving})*memory{i})/{length};"
 

@@ -7,7 +7,7 @@ with a limited force, and so are tyres, which push and never pull: their control
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from xml.sax.saxutils import quoteattr
@@ -28,6 +28,7 @@ Array = NDArray[np.float64]
 _LACKING = {
     "friction": "MuJoCo's friction loss instead, which has no presliding",
     "load-friction": "the friction of the empty vehicle",
+    "uneven-friction": "MuJoCo's friction loss instead, which has no presliding",
     "rounded-knee": "knees without rounding",
     "air": "the spring rate at rest",
     "levelled-air": "the spring rate at rest",
@@ -40,6 +41,9 @@ _LACKING = {
     "bending": "a rigid body",
 }
 """What MJCF cannot hold, and what stands for it in an approximation."""
+
+_FRICTION = frozenset({"friction", "uneven-friction"})
+"""Model terms that become a friction loss."""
 
 _LIMIT = 1e9
 """N: force that no actuator reaches."""
@@ -105,7 +109,7 @@ def mjcf(
         raise InputError(problems)
     # Dry friction stays in the equations, where it becomes a friction loss, and axles stay rigid.
     vehicle = vehicle.with_values(**dict.fromkeys(added, 0.0))
-    kept = without_terms(vehicle, load, frozenset(_LACKING.keys() & {*vehicle.extras}) - {"friction"})
+    kept = without_terms(vehicle, load, frozenset(_LACKING.keys() & {*vehicle.extras}) - _FRICTION)
     text = _Model(Equations.of(kept, load), tuple(sensors), height).text(notes)
     return ExportedFile(f"{identifier(vehicle.name)}.xml", text.encode(), tuple(notes))
 
@@ -245,7 +249,7 @@ class _Model:
         for force in equations.forces:
             rates.setdefault(force.row, {"spring": 0.0, "damper": 0.0, "preload": 0.0})
         for position, own in rates.items():
-            friction = sum(values[one.element.parameters[0]] for one in equations.forces if _is_friction(one, position))
+            friction = sum(_friction(one, values) for one in equations.forces if one.row == position)
             unloaded = own["preload"] / own["spring"] if own["spring"] else 0.0
             attributes = f'stiffness="{own["spring"]!r}" damping="{own["damper"]!r}" springlength="{unloaded!r}"'
             attributes += f' frictionloss="{friction!r}"' if friction else ""
@@ -299,8 +303,16 @@ class _Model:
         return f'<key name="{name}" qpos="{positions}"/>'
 
 
-def _is_friction(force: RowForce, row: int) -> bool:
-    return force.law == "friction" and force.row == row
+def _friction(force: RowForce, values: Mapping[str, float]) -> float:
+    """Return the dry friction of a force at which it slides, N; 0 for any other force."""
+    own = [values[name] for name in force.element.parameters]
+    match force.law:
+        case "friction":
+            return own[0]
+        case "friction left" | "friction right":
+            return own[1] + force.side * own[0]
+        case _:
+            return 0.0
 
 
 def _pieces(force: RowForce, values: dict[str, float]) -> Iterator[tuple[float, float, float, bool]]:

@@ -32,6 +32,7 @@ TERM_NAMES: Mapping[str, str] = {
     "seat-load": "loads on soft seats",
     "friction": "dry friction",
     "load-friction": "dry friction that grows with the load",
+    "uneven-friction": "dry friction that differs between left and right",
     "rebound": "dampers stiffer in rebound",
     "damper-curve": "damper curves with knees",
     "rounded-knee": "rounded knees of damper curves",

@@ -113,6 +113,19 @@ NONLINEAR_TERMS = (
         ),
     ),
     ModelTerm(
+        "uneven-friction",
+        of_axles(lambda p, axle: p[parameter_name("d_F", axle)] / (_TRAVEL * p[f"k_s{axle}"])),
+        typical=0.2,
+        spread=2.0,
+        negligible=0.01,
+        description=TermDescription(
+            "dry friction of the left {axle} wheel that is {0} above the mean of both sides",
+            ((lambda p, axle: p[parameter_name("d_F", axle)], "N"),),
+            again="{0} of the left {axle} wheel",
+        ),
+        on_request=True,
+    ),
+    ModelTerm(
         "rebound",
         of_axles(lambda p, axle: p[parameter_name("r", axle)] - 1),
         usual=lambda own, _: {parameter_name("r", axle): 1 + _REBOUND for axle in axles_of(own)},

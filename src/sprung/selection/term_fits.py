@@ -14,11 +14,12 @@ from sprung.estimation import NEAR, FitResult, fit_linear
 from sprung.progress import Step
 from sprung.selection.error_budget import MISFIT_LEFT, MISFIT_LEFT_AT_FIRST
 from sprung.selection.linear_terms import ENGINE
-from sprung.selection.ordinary_vehicle import fit_from_ordinary_vehicle, is_ordinary
+from sprung.selection.ordinary_vehicle import fit_from_ordinary_vehicle, is_ordinary, ordinary_vehicle
 from sprung.selection.scoring import WORTH_A_FIT, with_best_start
 from sprung.selection.search import ModelSearch
 from sprung.selection.starts import fit_structure, has_positive_masses, start_values
 from sprung.selection.structure import ModelStructure
+from sprung.uncertainty import KnownValue
 
 _STEPS_FROM_BELOW = 3
 """Iterations after which the gain of a term is expected whose first step ended below the fit without it."""
@@ -62,8 +63,26 @@ def fit_forced_terms(search: ModelSearch, requested: ModelStructure) -> ModelSea
     Returns
     -------
     ModelSearch
+
+    Notes
+    -----
+    Where a linear vehicle does not explain the records, its fit has shifted mass between body and wheels, and a fit with
+    nonlinear terms does not come back from there. It therefore begins also from one whose wheels have kept their masses.
     """
-    return select_gravity_leakage(search.refit(search.structure.with_terms(requested.terms)))
+    larger = search.structure.with_terms(requested.terms)
+    begins = [search, _begin_with_held_wheels(search, larger)] if search.has_model_error else [search]
+    if len(begins) > 1:
+        begins = [one.refit(larger, _FIRST_ITERATIONS, beginning_only=True) for one in begins]
+    best = max(begins, key=lambda begin: begin.fit.loglikelihood)
+    return select_gravity_leakage(best.refit(larger))
+
+
+def _begin_with_held_wheels(search: ModelSearch, larger: ModelStructure) -> ModelSearch:
+    """Fit a larger structure to the beginnings of the decays with the wheels' masses held at their stated or usual values."""
+    values, _ = ordinary_vehicle(larger)
+    wheels = {name: KnownValue(values[name]) for name in larger.names if name.startswith("m_u")}
+    linear, held = (replace(one, known={**one.known, **wheels}) for one in (search.structure, larger))
+    return search.refit(linear).refit(held, _FIRST_ITERATIONS, beginning_only=True)
 
 
 def fit_term(search: ModelSearch, term: str) -> ModelSearch:

@@ -35,8 +35,8 @@ LINEAR_EXTRAS = (
 """Extras, by the name used in a campaign's ``[model]``, of the linear model."""
 
 EXTRAS = (
-    *LINEAR_EXTRAS, "friction", "load-friction", "rebound", "damper-curve", "rounded-knee", "second-knee", "third-knee",
-    "progressive", "air", "levelled-air", "bump-stop", "tyre-curve",
+    *LINEAR_EXTRAS, "friction", "load-friction", "uneven-friction", "rebound", "damper-curve", "rounded-knee",
+    "second-knee", "third-knee", "progressive", "air", "levelled-air", "bump-stop", "tyre-curve",
 )  # fmt: skip
 """All extras; those beyond the linear ones are nonlinear elements."""
 
@@ -46,6 +46,7 @@ REFINED: Mapping[str, str] = MappingProxyType(
         "second-knee": "damper-curve",
         "third-knee": "second-knee",
         "load-friction": "friction",
+        "uneven-friction": "friction",
         "mount-damping": "damper-mount",
     }
 )

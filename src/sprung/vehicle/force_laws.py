@@ -136,6 +136,18 @@ def _load_friction_derivatives(parameters: Array, given: ElementInput) -> tuple[
     return force, np.concatenate([np.zeros_like(memory[:1]), memory])
 
 
+def _uneven_friction(side: float, parameters: Array, given: ElementInput) -> ElementForce:
+    difference, *own = parameters
+    sliding, memory = own[0] + side * difference, _friction(np.stack(own), given)
+    return memory._replace(force=sliding * memory.memory, by_memory=sliding + np.zeros_like(given.travel))
+
+
+def _uneven_friction_derivatives(side: float, parameters: Array, given: ElementInput) -> tuple[Array, Array]:
+    by_friction, memory = _friction_derivatives(parameters[1:], given)
+    force = np.concatenate([side * by_friction[:1], by_friction])
+    return force, np.concatenate([np.zeros_like(memory[:1]), memory])
+
+
 def _rebound(parameters: Array, given: ElementInput) -> ElementForce:
     ratio, damping = parameters
     zero = np.zeros_like(given.travel)
@@ -283,6 +295,15 @@ BUMP_STOP = ForceLaw("bump-stop", False, _bump_stop, _bump_stop_derivatives)
 GROUND = ForceLaw("ground", False, _ground, _ground_derivatives)
 """Unilateral contact of a tyre with the ground: cancels the tension of the linear tyre. Tyre rate, N/m, and tyre damping,
 N s/m, where it is a parameter; the travel is the height of the wheel above that at which its tyre just touches the ground."""
+
+UNEVEN_FRICTION: Mapping[float, ForceLaw] = {
+    side: ForceLaw(
+        f"friction {name}", True, partial(_uneven_friction, side), partial(_uneven_friction_derivatives, side)
+    )
+    for side, name in ((1.0, "left"), (-1.0, "right"))
+}
+"""Dry friction where that of both sides differs, by the side, 1 on the left: by how much that of the left wheel is above the
+mean, N; and force F, N, and presliding stiffness s, N/m, of the mean. It builds up over the same travel F/s on both sides."""
 
 UNEVEN_GROUND: Mapping[float, ForceLaw] = {
     side: ForceLaw(f"ground {name}", False, partial(_uneven_ground, side), partial(_uneven_ground_derivatives, side))

@@ -127,7 +127,8 @@ def _friction(law: ForceLaw, parameters: Real) -> tuple[Real, Real]:
     """Return the sliding force of friction, N, and the travel over which it builds up, m."""
     force, stiffness = parameters[-2:]
     length = np.maximum(np.abs(force) / stiffness, _SHORTEST)
-    return (parameters[0] if law.name == "load-friction" else force), length
+    still = np.zeros_like(force)
+    return law.evaluate(parameters, ElementInput(still, still, still, still + 1)).force, length
 
 
 def linearise_random(forces: NonlinearForces, values: Real, travel: RandomTravel) -> EquivalentElements:

@@ -21,6 +21,7 @@ from sprung.vehicle.force_laws import (
     PROGRESSIVE,
     REBOUND,
     TYRE_CURVE,
+    UNEVEN_FRICTION,
     UNEVEN_GROUND,
     ForceLaw,
 )
@@ -88,7 +89,8 @@ def nonlinear_elements(
     elements: list[NonlinearElement] = []
     for station in layout.wheels:
         axle, spring = STATIONS[station].axle, travel(station, "spring")
-        elements += _friction_forces(axle, spring, extras, STANDARD_GRAVITY * load.get(axle, 0.0))
+        weight = STANDARD_GRAVITY * load.get(axle, 0.0)
+        elements += _friction_forces(axle, spring, extras, weight, STATIONS[station].side)
         elements += _damper_forces(axle, damper_travel(station, tracks, extras, wheelbase), extras)
         elements += _spring_forces(axle, spring, extras)
         if "tyre-curve" in extras:
@@ -97,11 +99,16 @@ def nonlinear_elements(
     return tuple(elements)
 
 
-def _friction_forces(axle: str, travel: Row, extras: Collection[str], weight: float) -> Iterator[NonlinearElement]:
-    """Yield the dry friction of a wheel station, which carries a weight of the load, N."""
+def _friction_forces(
+    axle: str, travel: Row, extras: Collection[str], weight: float, side: float
+) -> Iterator[NonlinearElement]:
+    """Yield the dry friction of a wheel station, which carries a weight of the load, N, and is on a side, 1 on the left."""
     if "friction" in extras:
         own = (parameter_name("F", axle), parameter_name("s", axle))
-        yield NonlinearElement(FRICTION, own, travel)
+        if "uneven-friction" in extras:
+            yield NonlinearElement(UNEVEN_FRICTION[side], (parameter_name("d_F", axle), *own), travel)
+        else:
+            yield NonlinearElement(FRICTION, own, travel)
         if "load-friction" in extras:
             yield NonlinearElement(LOAD_FRICTION, (parameter_name("u", axle), *own), travel, weight=weight)
 

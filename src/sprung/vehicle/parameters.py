@@ -123,6 +123,7 @@ _TABLE: Mapping[str, Parameter] = {
     "F*": Parameter("N", "dry friction, each {} wheel", True, False),
     "s*": Parameter("N/m", "stiffness of the {} friction before it slides, each wheel", True),
     "u*": Parameter("1", "growth of the {} dry friction with the load, over the weight carried", False, False),
+    "d_F*": Parameter("N", "left {} dry friction above the mean of both", True, False, True),
     "r*": Parameter("1", "rebound damping over compression damping, {}", False),
     "v_k*": Parameter("m/s", "velocity at which the curve of the {} dampers has its knee", False),
     "q*": Parameter("1", "damping beyond the knee over that before it, {}", False),
@@ -181,6 +182,7 @@ _TERMS: Mapping[str, tuple[str, ...]] = {
     "seat-load": ("w_l", "c_l"),
     "friction": ("F*", "s*"),
     "load-friction": ("u*",),
+    "uneven-friction": ("d_F*",),
     "rebound": ("r*",),
     "damper-curve": ("v_k*", "q*"),
     "rounded-knee": ("w_k*",),
@@ -198,7 +200,18 @@ _TERMS: Mapping[str, tuple[str, ...]] = {
 
 _NEEDS: Mapping[str, Callable[[Layout], bool]] = {
     **dict.fromkeys(
-        ("anti-roll", "interconnection", "asymmetry", "rigid-axle", "y_o", "I_xx", "t*", "t*1", "t*2"),
+        (
+            "anti-roll",
+            "interconnection",
+            "asymmetry",
+            "uneven-friction",
+            "rigid-axle",
+            "y_o",
+            "I_xx",
+            "t*",
+            "t*1",
+            "t*2",
+        ),
         lambda one: one.rolls,
     ),
     **dict.fromkeys(("bending", "x_e", "x_o", "I_yy", "a", "b"), lambda one: one.pitches),

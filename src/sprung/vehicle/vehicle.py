@@ -64,6 +64,8 @@ class Vehicle:
         Dry friction of each suspension, N, and its presliding stiffness, N/m.
     u_f, u_r
         Growth of this friction with the load, over the weight that the wheel carries of it.
+    d_Ff, d_Fr
+        Excess of the left wheel's friction over the mean of left and right, N.
     r_f, r_r
         Rebound damping over compression damping; c_s is then that of compression.
     v_kf, v_kr, q_f, q_r, w_kf, w_kr

@@ -9,12 +9,12 @@
 #include <string.h>
 
 enum { MASS, DAMPER, SPRING };
-enum { FRICTION, LOAD_FRICTION, REBOUND, DAMPER_CURVE, PROGRESSIVE, AIR, BUMP_STOP };
+enum { FRICTION, LOAD_FRICTION, UNEVEN_FRICTION, REBOUND, DAMPER_CURVE, PROGRESSIVE, AIR, BUMP_STOP };
 
 /* A parameter is given by its number; -1 stands for none, and as a factor for 1. */
 typedef struct { int row, coordinate, parameter; double value; } RowEntry;
 typedef struct { int law, row, parameter; double factor, offset; } Element;
-typedef struct { int law, row, count, parameters[12], has_ratio, is_rounded, memory; double offset, weight; } Force;
+typedef struct { int law, row, count, parameters[12], has_ratio, is_rounded, memory; double offset, factor; } Force;
 typedef struct { int coordinate, stiffness, difference, damping, growth; double side; } Tyre;
 typedef struct { int output, order, coordinate, parameter; double value; } OutputEntry;
 typedef struct { int output, wheel; } TyreOutput;
@@ -133,7 +133,8 @@ static double law(const Vehicle *vehicle, const Force *force, double travel, dou
     double x = travel - force->offset;
     switch (force->law) {
     case FRICTION: return p * memory[force->memory];
-    case LOAD_FRICTION: return force->weight * p * memory[force->memory];
+    case LOAD_FRICTION: return force->factor * p * memory[force->memory];
+    case UNEVEN_FRICTION: return (q + force->factor * p) * memory[force->memory];
     case REBOUND: return (p - 1.0) * q * fmax(rate, 0.0);
     case DAMPER_CURVE: return damper_curve(vehicle, force, rate);
     case PROGRESSIVE: return -0.5 * p * q * x * x;
@@ -241,7 +242,7 @@ static void derivative(Vehicle *vehicle, double time, const double *state, doubl
         double moving = dot(vehicle->row[one->row], velocity, N_FORCED);
         double limit = value(vehicle, one->parameters[one->count - 2]);
         /* Without a force the memory has no effect, and would only shorten the steps. */
-        if (value(vehicle, one->parameters[0]) == 0.0) continue;
+        if (value(vehicle, one->parameters[one->law == UNEVEN_FRICTION]) == 0.0) continue;
         double length = fmax(fabs(limit) / value(vehicle, one->parameters[one->count - 1]), 1e-7);
         rate[N_FORCED + N_MASSIVE + one->memory] = (moving - fabs(moving) * memory[one->memory]) / length;
     }

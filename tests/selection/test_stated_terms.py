@@ -1,0 +1,54 @@
+"""Fits of nonlinear terms that are stated: from where they begin."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+import sprung
+from sprung.analysis import AnalysisOptions
+from sprung.analysis.analysis import Analysis
+from sprung.analysis.stages import STAGES
+from sprung.selection.term_fits import fit_forced_terms
+from sprung.uncertainty import KnownValue
+from sprung.vehicle import Sensor, Vehicle
+
+RIG = Vehicle(model="roll-plane", m_s=433, I_xx=115, m_u=100, k_s=18e3, k_t=320e3, c_s=120, t=0.75, F=30, s=8e5)
+BOTH_ENDS = [{"excitation": "push", "wheels": ["left", "right"]}, {"excitation": "push", "wheels": ["left"]}]
+
+
+def sensors() -> list[Sensor]:
+    """Displacements of both ends of the body and of both wheels."""
+    exact = {"quantity": "displacement", "unit": "mm", "tilt_std": 0.0}
+    on_body = [
+        Sensor(channel=name, on="body", position=(0.0, y, 0.5), position_std=0.0, **exact)  # type: ignore[arg-type]
+        for name, y in (("body_left", 0.75), ("body_right", -0.75))
+    ]
+    return [*on_body, *(Sensor(channel=f"wheel_{side}", on=side, **exact) for side in ("left", "right"))]  # type: ignore[arg-type]
+
+
+def test_a_fit_comes_back_from_wheels_heavier_than_the_body() -> None:
+    """Begun where mass has moved from the body to the wheels, it ends at the rig's; straight from there at some 475 kg."""
+    known: dict[str, float | KnownValue] = {"m_s": 433.0, "t": 0.75, "m_u": KnownValue(80.0, 40.0)}
+    campaign = sprung.simulate(
+        RIG,
+        sensors=sensors(),
+        drops=BOTH_ENDS,
+        push={"shape": "rope"},
+        known=known,
+        noise=2e-5,
+        seed=1,
+        duration=2,
+        rate=250,
+    )
+    run = Analysis.start(campaign, AnalysisOptions(tracks="shared", terms=RIG.extras), STAGES[:3]).run()
+    linear, requested = run.model, run.requested
+    assert requested is not None
+    heavy = {**linear.structure.known, "m_u": KnownValue(600.0)}
+    astray = replace(linear.refit(replace(linear.structure, known=heavy)), structure=linear.structure)
+    assert astray.fit.parameters["m_u"] == pytest.approx(600.0)
+    found = fit_forced_terms(astray, requested).fit.parameters
+    assert {name: found[name] for name in ("m_u", "k_t", "F")} == pytest.approx(
+        {"m_u": 100.0, "k_t": 320e3, "F": 30.0}, rel=0.01
+    )
