@@ -93,6 +93,17 @@ def test_scores_are_those_of_the_linear_fit(
     assert by_steps == pytest.approx(by_modes, rel=0.15)
 
 
+def test_a_start_whose_motion_has_no_bounds_has_no_score(
+    campaign: Campaign, plain: ModelStructure, optimum: FitResult
+) -> None:
+    larger = plain.with_terms(("anti-roll",))
+    sound, unstable = (optimum.parameters | {"k_af": rate, "k_ar": rate} for rate in (0.0, -1e9))
+    (own, _), (gain, _) = score_linear_term(
+        optimum, larger.linear_models, campaign.sensors, larger.known, [sound, unstable]
+    )
+    assert gain == -np.inf < own
+
+
 @pytest.mark.slow
 def test_scores_of_forces_need_no_steps(
     campaign: Campaign, plain: ModelStructure, optimum: FitResult, monkeypatch: pytest.MonkeyPatch
@@ -141,6 +152,24 @@ def test_what_is_lost_without_a_value_is_what_the_likelihood_loses(
     known = dict(plain.known) | {"m_uf": sprung.uncertainty.KnownValue(value)}
     held = fit_linear(decays, plain.linear_models, campaign.sensors, known, start=optimum.parameters | {"m_uf": value})
     assert 2 * (optimum.loglikelihood - held.loglikelihood) == pytest.approx(expected, rel=0.05)
+
+
+def test_what_is_lost_without_a_term_does_not_depend_on_how_well_the_scale_is_known() -> None:
+    """Weighed to 10 %, rates of anti-roll bars are known to 10 %; that there are any, hundreds of standard errors."""
+    barred = Vehicle.from_parameters(TABLE_1_CAR.parameters | {"k_af": 2000.0, "k_ar": 2000.0})
+    lost = {}
+    for weighed in (0.001, 0.1):
+        total = sprung.uncertainty.KnownValue(barred.total_mass, weighed * barred.total_mass)
+        drops = [{"wheels": wheels} for wheels in (("fl", "fr"), ("fl", "rl"))]
+        other = sprung.simulate(barred, drops=drops, noise=0.02, seed=4, known={"total_mass": total})
+        structure = choose_structure(other, "shared", ("anti-roll",))
+        found = fit_linear(prepare(other).decays, structure.linear_models, other.sensors, structure.known)
+        lost[weighed] = wald_test(found, [("k_af", 0.0), ("k_ar", 0.0)])
+        # A certain rate is not the same at every scale.
+        certain = wald_test(found, [("k_af", 1000.0)])
+        assert certain == pytest.approx((0.5 / weighed) ** 2, rel=0.2) if weighed == 0.1 else certain > 1000
+    assert lost[0.001] > 1e4
+    assert lost[0.1] == pytest.approx(lost[0.001], rel=1e-3)
 
 
 def test_a_friction_that_went_astray_begins_anew_without_a_jolt(

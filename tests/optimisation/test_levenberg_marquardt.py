@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from sprung.optimisation import NormalEquations, maximise
+from sprung.optimisation import Maximum, NormalEquations, maximise
 
 Real = NDArray[np.float64]
 Array = NDArray[Any]
@@ -154,3 +154,36 @@ def test_without_any_direction_there_is_nothing_to_gain() -> None:
     step, gain = equations.step(0.1)
     np.testing.assert_array_equal(step, np.zeros(3))
     assert gain == 0.0
+
+
+class Scripted:
+    """A log-likelihood whose steps gain other than expected, as where noise levels follow the residuals."""
+
+    def __init__(self, expected: list[float], gained: list[float]) -> None:
+        self.expected, self.gained = expected, gained
+
+    def normal_equations(self, point: int) -> NormalEquations:
+        one = np.ones((1, 1))
+        return NormalEquations(one, np.array([self.expected[point] ** 0.5]), one, one)
+
+    def trial(self, point: int, step: Array, _damping: float) -> tuple[int, float]:
+        del step
+        return point + 1, self.gained[point]
+
+
+def test_a_step_that_gains_far_more_than_expected_is_not_the_last() -> None:
+    """Twice the log-likelihood of a friction, from the first seconds of a fit: 17 are enough, 250 were expected, 4000 came."""
+    found = maximise(
+        Scripted([5000.0, 250.0, 8000.0, 300.0, 5.0], [5000.0, 4000.0, 9000.0, 300.0, 5.0]),
+        0,
+        tolerance=17.0,
+        damping=1e-9,
+        most_steps=20,
+    )
+    assert found.converged
+    assert found.point >= 3
+    # A step that gains what was expected, a twentieth of the one before, is the last one.
+    found = maximise(
+        Scripted([5000.0, 250.0, 0.1], [5000.0, 250.0, 0.1]), 0, tolerance=17.0, damping=1e-9, most_steps=20
+    )
+    assert found == Maximum(2, 2, converged=True)

@@ -28,7 +28,7 @@ from sprung.estimation.prediction import Prediction, predictions
 from sprung.estimation.priors import Coordinates, PriorsAndConstraints, UsualValue
 from sprung.estimation.problem import CONVERGED, MOST_STEPS, NO_INFORMATION, RANK, identifiable_subspace
 from sprung.estimation.profile import profiled
-from sprung.estimation.score_test import ScoreTest, lift_priors, score_added, wald_test
+from sprung.estimation.score_test import ScoreTest, lift_priors, per_total_mass, score_added, wald_test
 from sprung.estimation.starts import (
     USUAL_ENGINE,
     USUAL_ENGINE_FREQUENCY,
@@ -94,6 +94,7 @@ __all__ = [
     "lift_priors",
     "mode_estimates",
     "parameters_from_matrices",
+    "per_total_mass",
     "predictions",
     "profiled",
     "rates_at_motion_ratios",

@@ -125,7 +125,7 @@ def score_linear_term(
     -------
     tuple
         For each of the starts the gain in twice the log-likelihood, to second order, and the parameters of the larger model
-        after one Newton step, SI, by name.
+        after one Newton step, SI, by name. The gain is -inf for a start from which the motion has no bounds.
     """
     names = next(iter(models.values())).names
     at, readout = fit.iterate.at.modal, readout_of(sensors, names, known)
@@ -141,6 +141,9 @@ def score_linear_term(
         u = problem.priors.project(problem.priors.coordinates.from_parameters(values))
         # Where the models are equal, so are their residuals, and the noise that these show.
         iterate = Iterate(u, objective.at(problem.priors.coordinates.values(u), fit.weights))
+        if not np.isfinite(iterate.at.residual_sums).all():  # a motion without bounds
+            scores.append((-np.inf, dict(values)))
+            continue
         information, gradient, null_space = problem.system(iterate)
         test = score_test(information, gradient, 0)
         estimates = problem.priors.coordinates.extrapolated(u, null_space @ test.joint_values())

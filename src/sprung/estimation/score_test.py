@@ -15,8 +15,9 @@ from numpy.typing import NDArray
 
 from sprung.estimation.elimination import eliminate
 from sprung.estimation.fit_result import FitResult
+from sprung.estimation.priors import scaling_direction
 from sprung.estimation.problem import identifiable_equations, identifiable_subspace
-from sprung.vehicle import is_of_sensor
+from sprung.vehicle import evaluate_quantity, is_of_sensor
 
 Real = NDArray[np.float64]
 
@@ -199,6 +200,12 @@ def wald_test(fit: FitResult, constraints: Sequence[tuple[str, str | float]]) ->
     Returns
     -------
     float
+
+    Notes
+    -----
+    That a force vanishes, a spring in series is rigid or two parameters are equal holds at any scale of the vehicle: what is
+    tested there is the ratio to the total mass. Where the scale is hardly known, a friction of which all records speak would
+    otherwise be as uncertain as the scale, and seem to be nothing.
     """
     coordinates, u, names = fit.problem.priors.coordinates, fit.iterate.u, fit.names
     rows, away = np.zeros((len(constraints), len(names))), np.zeros(len(constraints))
@@ -210,7 +217,33 @@ def wald_test(fit: FitResult, constraints: Sequence[tuple[str, str | float]]) ->
             away[i] = row @ u
         else:
             away[i] = coordinates.distance(u, name, value)
+    at_any_scale = np.array([isinstance(value, str) or value == 0 or np.isinf(value) for _, value in constraints])
+    rows = np.where(at_any_scale[:, None], per_total_mass(fit, rows), rows)
     equations = fit.problem.normal_equations(fit.iterate)
     along = rows @ equations.directions
     covariance = along @ np.linalg.solve(equations.information, along.T)
     return float(away @ np.linalg.pinv(covariance) @ away)
+
+
+def per_total_mass(fit: FitResult, gradients: Real) -> Real:
+    """Return gradients of quantities over the total mass, as a part of what is tested, from those of the quantities.
+
+    No acceleration shows the scale of a vehicle, which multiplies every mass and rate alike; statements and usual values may
+    know it badly. Ratios do not depend on it.
+
+    Parameters
+    ----------
+    fit
+        The fitted model.
+    gradients
+        By the coordinates, shape (quantity, coordinate).
+
+    Returns
+    -------
+    ndarray
+        Likewise; as given for quantities that do not change with the scale.
+    """
+    slopes = fit.problem.priors.coordinates.derivatives(fit.iterate.u)
+    total, of_mass = evaluate_quantity("total_mass", fit.names, fit.values)
+    growth = gradients @ scaling_direction(fit.names, fit.values, slopes)
+    return gradients - np.outer(growth, of_mass * slopes / total)

@@ -177,7 +177,10 @@ def _gaining_step(
     longest: float,
     tolerance: float,
 ) -> tuple[Point, float, float] | None:
-    """Return the point a step further that does not lose, the next damping and the expected gain; None if there is none.
+    """Return the point a step further that does not lose, the next damping and the gain; None if there is none.
+
+    The gain is what was expected, or what came of it where that is more: as noise levels follow the residuals, a step may gain
+    many times what was expected at the old ones, and the steps to come likewise.
 
     In a curved valley the straight way leads up its wall, and only the next step down again, further along: where the first
     step loses, one more is tried from there (the watchdog). No step is tried that would gain too little.
@@ -189,7 +192,8 @@ def _gaining_step(
             return None
         tried, gain = problem.trial(point, step, damping)
         if gain >= 0:
-            return tried, _next_damping(damping, gain / max(expected, np.finfo(float).tiny)), expected
+            ratio = gain / max(expected, np.finfo(float).tiny)
+            return tried, _next_damping(damping, ratio), max(expected, gain)
         if first and np.isfinite(gain):
             back, _ = problem.normal_equations(tried).step(damping, longest)
             second_point, further = problem.trial(tried, back, damping)

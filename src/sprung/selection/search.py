@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from sprung.assessment import estimate_model_error
 from sprung.display import shown
-from sprung.estimation import NEAR, FitResult, wald_test
+from sprung.estimation import NEAR, FitResult, per_total_mass, wald_test
 from sprung.preprocess import FreeDecay
 from sprung.progress import Progress, silent
 from sprung.selection.error_budget import LEAST_SHARE, MODEL_ERROR, OVERDISPERSED, UNEXPLAINED, required_gain
@@ -322,10 +322,10 @@ class ModelSearch:
         return ""
 
     def _undetermined(self, names: Sequence[str]) -> list[str]:
-        """Return those of some positive parameters that are not known to a factor of e."""
+        """Return those of some positive parameters that are not known to a factor of e beside the total mass."""
         equations = self.fit.problem.normal_equations(self.fit.iterate)
-        covariance = np.linalg.solve(equations.information, equations.directions.T)
-        variance = np.einsum("ud,du->u", equations.directions, covariance) * self.overdispersion
+        along = per_total_mass(self.fit, np.eye(len(self.fit.names))) @ equations.directions
+        variance = np.einsum("ud,du->u", along, np.linalg.solve(equations.information, along.T)) * self.overdispersion
         # A direction without information is not among those of the equations at all.
         seen = np.sum(equations.directions**2, axis=1) > 0.5
         places = {name: self.fit.names.index(name) for name in names if PARAMETERS[name].positive}
