@@ -143,6 +143,11 @@ def test_a_recording_is_drawn_and_one_elsewhere_is_not_read(server: Served) -> N
         ("/check?campaign=../x.toml", 404),
         ("/identify?campaign=/etc/passwd", 404),
         ("/draft?folder=..", 404),
+        ("/plan?campaign=../x.toml", 404),
+        ("/plan?campaign=none.toml", 404),
+        ("/plan?campaign=car/empty_bounce.csv", 400),
+        ("/validate?campaign=none.toml", 404),
+        ("/validate?campaign=car/empty_bounce.csv", 400),
     ],
 )
 def test_other_addresses(server: Served, path: str, status: int) -> None:

@@ -21,7 +21,7 @@ from sprung.app.queries import queries_of
 from sprung.app.rendering import render, wants_page
 from sprung.app.result_files import default_results
 from sprung.app.text_difference import with_line_ends
-from sprung.app.tool_pages import required
+from sprung.app.tool_pages import campaign_name, required
 from sprung.app.workspace import NEW, ChangedError, OutsideError, Workspace, inside, parent_of
 from sprung.errors import InputError, Problem
 
@@ -29,7 +29,7 @@ from sprung.errors import InputError, Problem
 async def show(request: Request) -> Response:
     """Answer with the page of a campaign file, as its form or as text."""
     workspace: Workspace = request.app.state.workspace
-    name = _campaign(request)
+    name = campaign_name(request)
     text, version = workspace.read_text(name)
     if version == NEW:
         raise HTTPException(404, f"There is no file {name}. Draft it from the recordings on the page of the folder.")
@@ -52,7 +52,7 @@ async def change(request: Request) -> Response:
     A script, which does not ask for a page, learns only whether it was saved; if not, the browser asks again for the page that
     shows why.
     """
-    name = _campaign(request)
+    name = campaign_name(request)
     form = await read_form(request)
     action, version, original = form.text("action", "save"), form.text("version"), _hidden_text(form, "original")
     if "text" in form:
@@ -103,7 +103,7 @@ async def _save(request: Request, name: str, text: str, version: str, **query: s
 
 async def live(request: Request) -> Response:
     """Answer with the problems, gaps and sketch of what was entered, without saving it."""
-    name = _campaign(request)
+    name = campaign_name(request)
     form = await read_form(request)
     original = _hidden_text(form, "original")
     path = str(request.app.state.workspace.path(name))
@@ -144,7 +144,7 @@ async def live(request: Request) -> Response:
 
 async def drop(request: Request) -> Response:
     """Answer with the picture of one drop's recording."""
-    name = _campaign(request)
+    name = campaign_name(request)
     workspace: Workspace = request.app.state.workspace
     form = await read_form(request)
     index = required(request, "drop")
@@ -158,14 +158,6 @@ async def drop(request: Request) -> Response:
         index=int(index) if index.isdecimal() and len(index) < 6 else -1,
     )
     return JSONResponse(found)
-
-
-def _campaign(request: Request) -> str:
-    """Return the name of the campaign file; no recording can be opened, or overwritten, as one."""
-    name = required(request, "campaign")
-    if not name.endswith(".toml"):
-        raise HTTPException(400, f"{name} is no campaign file, whose name ends in .toml.")
-    return name
 
 
 async def _change_text(request: Request, name: str, form: Form, action: str, version: str, original: str) -> Response:

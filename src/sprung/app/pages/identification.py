@@ -102,8 +102,8 @@ def check_output(workspace: Workspace, jobs: Jobs, campaign: str, output: str) -
     try:
         path = results_path(workspace, output)
     except OutsideError as error:
-        expected = f"a folder in {workspace.folder.name}"
-        raise InputError([Problem(where, f"'{output}' ({error})", expected, do)]) from error
+        expected = f"the name of a folder in {workspace.folder.name}"
+        raise InputError([Problem(where, f"'{output}'", expected, do)]) from error
     own = {entry.name.rpartition("/")[2] for entry in (workspace.listing(output, 0).entries if path.is_dir() else ())}
     if path.is_file() or (own and "results.json" not in own):
         expected = "a new folder, or one with a result"
