@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import asyncio
 import http.client
 from collections.abc import Iterator
+from typing import Any
 
 import pytest
 
 from served import Served, served
-from sprung.app.access import REPORT_POLICY, Keys
+from sprung.app.access import REPORT_POLICY, Access, Keys
 
 CONTENT = "the content of a file of the user"
 HOSTS = (
@@ -160,3 +162,43 @@ def test_a_page_from_the_folder_is_a_site_of_its_own(server: Served) -> None:
 def test_a_web_socket_is_not_opened(server: Served) -> None:
     headers = {"Connection": "Upgrade", "Upgrade": "websocket", "Sec-WebSocket-Version": "13"}
     assert server.ask("/events?job=x", headers={**headers, "Sec-WebSocket-Key": "x" * 22 + "=="}).status != 101
+
+
+def status_of(port: int, path: str, host: str, **headers: str) -> int:
+    """Status with which a request with the cookie is answered, without a network."""
+    keys, sent = Keys(), []
+
+    async def page(scope: Any, receive: Any, send: Any) -> None:  # noqa: ARG001 (an ASGI application)
+        await send({"type": "http.response.start", "status": 200, "headers": []})
+
+    async def send(message: Any) -> None:
+        sent.append(message)
+
+    given = {"host": host, "cookie": f"sprung-{port}={keys.cookie}", **headers}
+    scope: dict[str, Any] = {
+        "type": "http",
+        "method": "POST" if "origin" in headers else "GET",
+        "path": path,
+        "query_string": b"",
+    }
+    scope["headers"] = [(name.encode(), value.encode()) for name, value in given.items()]
+
+    async def ask() -> None:
+        await Access(page, keys, port, {"/": 1000})(scope, None, send)  # type: ignore[arg-type]
+
+    asyncio.run(ask())
+    assert (b"x-content-type-options", b"nosniff") in sent[0]["headers"]
+    return int(sent[0]["status"])
+
+
+def test_browsers_leave_out_the_usual_port() -> None:
+    assert status_of(80, "/", "127.0.0.1") == status_of(80, "/", "localhost") == 200
+    body = {"content-length": "0", "sec-fetch-site": "same-origin"}
+    assert status_of(80, "/", "127.0.0.1", origin="http://127.0.0.1", **body) == 200
+    assert status_of(80, "/", "127.0.0.1", origin="http://127.0.0.1:81", **body) == 403
+    assert status_of(80, "/", "127.0.0.1:81") == status_of(8000, "/", "127.0.0.1") == 403
+
+
+@pytest.mark.parametrize("path", ["http://evil.example/jobs", "*", "", "evil.example:443"])
+def test_a_request_for_a_proxy_is_refused(path: str) -> None:
+    assert status_of(8000, path, "127.0.0.1:8000") == 400

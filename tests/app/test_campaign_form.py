@@ -221,6 +221,7 @@ def test_each_kind_of_field(path: Path) -> None:
         ("sensor__1__position__0", "1", "no y"),
         ("test__date", "yesterday", "'yesterday'"),
         ("test__date", "31.02.2026", "'31.02.2026'"),
+        ("test__date", "٢٠٢٦-11-22", "'٢٠٢٦-11-22'"),
     ],
 )
 def test_what_cannot_be_understood_is_said_and_kept_on_the_page(path: Path, name: str, value: str, found: str) -> None:
@@ -249,6 +250,8 @@ def test_what_cannot_be_understood_is_said_and_kept_on_the_page(path: Path, name
         ("0x10", None),
         ("1.194,5", None),
         ("inf", None),
+        ("٢", None),
+        ("2e٢", None),
         ("", None),
         ("1-2", None),
     ],
@@ -388,3 +391,13 @@ def test_what_may_remain_unknown_can_be_left_out(path: Path) -> None:
         text = apply_action(text, f"remove {name}")
     assert "TODO" not in text
     assert not field(form_of(text, path), "known.total_mass").stated  # it can still be entered
+
+
+def test_drops_keep_a_load_that_is_renamed(path: Path) -> None:
+    text = (
+        FILE.replace('load = "sandbag"', 'load = "sandbags"') + '[[load]]\nname = "driver"\n[[drop]]\nload = "driver"\n'
+    )
+    document = tomllib.loads(save(text, path, load__0__name="bricks", drop__0__load="driver"))
+    assert [drop.get("load") for drop in document["drop"]] == ["driver", "bricks", "driver"]
+    swapped = tomllib.loads(save(text, path, load__0__name="driver", load__1__name="sandbags"))
+    assert [drop.get("load") for drop in swapped["drop"]] == [None, "driver", "sandbags"]

@@ -46,13 +46,13 @@ def file(server: Served) -> Path:
     return path
 
 
-def sent(server: Served, path: str = PAGE, **fields: Any) -> Answer:
+def sent(server: Served, path: str = PAGE, accept: str = "text/html", **fields: Any) -> Answer:
     """Send the form as it was shown, with some fields changed or added."""
-    page = server.ask(PAGE).text
+    page = server.ask(path.replace("/live?", "?").replace("/drop?", "?").removesuffix("&as=text")).text
     form: dict[str, Any] = {name: json.dumps(carried(page, name)) for name in ("base", "original")}
     form["version"] = re.search(r'name="version" value="(\w*)"', page)[1]  # type: ignore[index]
     form |= {name.replace("__", "."): value for name, value in fields.items()}
-    headers = {"Content-Type": "application/x-www-form-urlencoded", "Accept": "text/html"}
+    headers = {"Content-Type": "application/x-www-form-urlencoded", "Accept": accept}
     return server.ask(path, "POST", urlencode(form, doseq=True).encode(), headers)
 
 
@@ -143,10 +143,84 @@ def test_a_recording_is_drawn_and_one_elsewhere_is_not_read(server: Served) -> N
         ("/check?campaign=../x.toml", 404),
         ("/identify?campaign=/etc/passwd", 404),
         ("/draft?folder=..", 404),
+        ("/plan?campaign=../x.toml", 404),
+        ("/plan?campaign=none.toml", 404),
+        ("/plan?campaign=car/empty_bounce.csv", 400),
+        ("/validate?campaign=none.toml", 404),
+        ("/validate?campaign=car/empty_bounce.csv", 400),
     ],
 )
 def test_other_addresses(server: Served, path: str, status: int) -> None:
     assert server.ask(path, headers={"Accept": "text/html"}).status == status
+
+
+def test_a_script_saves_without_another_page(server: Served, file: Path) -> None:
+    entered = {"vehicle__wheelbase__value": "2,6", "vehicle__wheelbase__std": ""}
+    answer = sent(server, accept="application/json", action="save", **entered)
+    assert (answer.status, answer.json["saved"]) == (200, True)
+    assert answer.json["text"].encode() == file.read_bytes()
+    again = sent(server, accept="application/json", action="save", version=answer.json["version"], vehicle__name="x")
+    assert again.json["saved"]
+    # Everything else has a page that the browser asks for; nothing is saved.
+    saved = file.read_bytes()
+    for changes in ({"action": "add sensor"}, {"version": "0" * 64}, {"vehicle__wheelbase__value": "two"}):
+        assert sent(server, accept="application/json", **{**entered, **changes}).json == {"saved": False}
+    assert file.read_bytes() == saved
+
+
+def test_the_form_remains_where_saving_fails(server: Served) -> None:
+    name = "c" * 240 + ".toml"  # beside which no temporary file can be made
+    (server.folder / "car" / name).write_text(TEXT)
+    page = f"/campaign?campaign=car/{name}"
+    answer = sent(server, page, action="save", vehicle__name="entered")
+    assert answer.status == 400
+    assert "a place that cannot be written to" in answer.text
+    assert 'value="entered"' in answer.text
+    answer = sent(server, f"{page}&as=text", action="save", text="# entered")
+    assert answer.status == 400
+    assert "a place that cannot be written to" in answer.text
+    assert "# entered</textarea>" in answer.text
+    answer = sent(server, page, accept="application/json", action="save", vehicle__name="entered")
+    assert (answer.status, "a place that cannot be written to" in answer.text) == (400, True)
+
+
+@pytest.mark.usefixtures("file")
+def test_a_quantity_is_added_without_a_script(server: Served) -> None:
+    answer = sent(server, action="add known", quantity="k_sf")
+    assert answer.status == 200
+    assert 'name="known.k_sf.value"' in answer.text
+
+
+@pytest.mark.usefixtures("file")
+@pytest.mark.parametrize(
+    ("action", "focus"),
+    [
+        ("remove sensor.0", 'id="add-sensor" autofocus'),
+        ("remove vehicle.wheelbase", 'invalid="false" autofocus'),
+        ("add drop", 'id="drop.2.file" name="drop.2.file" value="" aria-describedby="problem-drop.2.file" '),
+    ],
+)
+def test_the_focus_stays_where_something_was_removed_or_added(server: Served, action: str, focus: str) -> None:
+    page = sent(server, action=action).text
+    assert focus in page
+    assert page.count(" autofocus") == 1
+
+
+def test_what_was_changed_meanwhile_is_not_lost_without_a_word(server: Served, file: Path) -> None:
+    mine = sent(server, action="save", version="0" * 64, vehicle__name="Other").text
+    assert '<button type="submit" name="action" value="as form" class="main">' in mine
+    page = sent(server, action="as form", text=TEXT, meanwhile="yes").text
+    assert "Saving replaces that version" in page
+    assert file.read_bytes() == TEXT.replace("\n", "\r\n").encode()
+
+
+def test_what_is_missing_in_a_file_that_cannot_be_read_is_not_known(server: Served, file: Path) -> None:
+    file.write_text("[[drop")
+    assert "nothing is missing" not in server.ask(PAGE).text
+    assert "What is missing in it is known once" in server.ask(PAGE).text
+    file.write_text(TEXT)
+    found = sent(server, PAGE.replace("?", "/live?"), text="[[drop").json
+    assert "nothing is missing" not in found["state"]
 
 
 @pytest.mark.parametrize("field", ["base", "original"])

@@ -11,6 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sprung.app.campaign_text import Change, apply_changes, quoted
+from sprung.app.text_difference import difference as line_difference
+from sprung.app.text_difference import with_line_ends
 from sprung.app.toml_spans import Place, entries_by_place, scan
 from sprung.errors import InputError
 
@@ -255,3 +257,34 @@ def _at(node: Any, place: Place) -> Any:
     for part in place:
         node = node[part]
     return node
+
+
+def test_a_long_file_is_compared_quickly() -> None:
+    """Where every line is the same, a whole comparison takes a time that grows with the third power of their number."""
+    import time  # noqa: PLC0415
+
+    file = "# about nothing\n" * 31_000  # the largest that is read
+    began = time.process_time()
+    assert line_difference(file, f"{file}end = 1\n") == ["@@ -31000,1 +31000,2 @@", " # about nothing", "+end = 1"]
+    both = line_difference(f"a = 1\n{file}b = 1\n", f"a = 2\n{file}b = 2\n")
+    assert both[1:3] == ["-a = 1", "-# about nothing"]
+    assert len(both) < 1100
+    assert time.process_time() - began < 1.0
+
+
+LINES = st.lists(st.sampled_from(["", "a", "b", "c"]), max_size=8)
+
+
+@given(LINES, LINES, st.lists(st.booleans(), min_size=8, max_size=8))
+def test_every_line_that_stays_keeps_its_end(old: list[str], new: list[str], ends: list[bool]) -> None:
+    file = "".join(f"{line}\r\n" if end else f"{line}\n" for line, end in zip(old, ends, strict=False))
+    text = "".join(f"{line}\n" for line in new)
+    found = with_line_ends(text, file)
+    assert found.replace("\r\n", "\n") == text
+    assert with_line_ends(file.replace("\r\n", "\n"), file) == file
+    added = with_line_ends(f"{file}new\n".replace("\r\n", "\n"), file)
+    assert added.startswith(file)
+    shown = line_difference(file, found)
+    assert shown == line_difference(file.replace("\r\n", "\n"), text)
+    context = [line[1:] for line in shown if line[0] in " +"]
+    assert all(line in new for line in context)

@@ -12,7 +12,11 @@ import pytest
 from raw_recordings import write_recordings
 from served import Served, served, wait_for
 from sprung.app.folder_content import folder_content
+from sprung.app.jobs import Job, Jobs
+from sprung.app.pages.identification import check_output
+from sprung.app.result_files import default_results, results_folders
 from sprung.app.workspace import Workspace
+from sprung.errors import InputError
 
 DRAFT = '[vehicle]\nname = "Van"\nwheelbase = "TODO: m"\n[known]\ntotal_mass = "TODO: kg"\n[[drop]]\nfile = "a.csv"\n'
 
@@ -49,6 +53,49 @@ def test_what_is_in_a_folder(folder: Path) -> None:
     assert content.folders == ("", "other", "van", "van/deep")
     own = next(entry for entry in content.campaigns if entry.name == "van/campaign.toml")
     assert own.results == content.results[0]
+
+
+def test_a_result_belongs_to_the_campaign_that_it_was_made_from(folder: Path) -> None:
+    workspace = Workspace(folder)
+    (folder / "van" / "campaign.toml").rename(folder / "van" / "summer.toml")
+    (folder / "van" / "winter.toml").write_text(DRAFT)
+    write_result(folder / "van" / "results", "summer.toml", "accept")
+    own = {entry.name: entry.results and entry.results.name for entry in folder_content(workspace).campaigns}
+    assert own == {"van/summer.toml": "van/results", "van/winter.toml": None, "broken.toml": None}
+    assert default_results(workspace, "van/summer.toml") == "van/results"
+    assert default_results(workspace, "van/winter.toml") == "van/results-winter"
+    # Also one that lies elsewhere below the folder of its campaign file.
+    write_result(folder / "van" / "deep" / "trial", "winter.toml", "reject")
+    own = {entry.name: entry.results and entry.results.name for entry in folder_content(workspace).campaigns}
+    assert own["van/winter.toml"] == "van/deep/trial"
+    assert {one.name: one.campaign for one in results_folders(workspace)} == {
+        "van/results": "van/summer.toml",
+        "van/deep/trial": "van/winter.toml",
+    }
+    (folder / "van" / "winter.toml").unlink()
+    assert [result.campaign for result in folder_content(workspace).results] == ["", "van/summer.toml"]
+
+
+def write_result(folder: Path, campaign: str, verdict: str) -> None:
+    """Write what the folder's page reads of a result."""
+    folder.mkdir(exist_ok=True)
+    document = {"setup": {"files": [{"name": campaign}]}, "vehicle": {"name": "Van"}, "verdict": {"state": verdict}}
+    (folder / "results.json").write_text(json.dumps(document))
+
+
+def test_a_results_folder_that_cannot_be_used_is_said_at_its_field(folder: Path) -> None:
+    """Neither outside, nor among other files, nor where another identification writes."""
+    workspace, jobs = Workspace(folder), Jobs()
+    (folder / "van" / "campaign.toml").write_text("[vehicle]\n")
+    for name in ("../x", "/abs/x", "van/.x", "van/deep", "van/a.csv"):
+        with pytest.raises(InputError, match=r"^Results folder: found"):
+            check_output(workspace, jobs, "van/campaign.toml", name)
+    for name in ("van/results", "van/new", "van/results zwei/ü"):
+        check_output(workspace, jobs, "van/campaign.toml", name)
+    jobs._jobs["1"] = Job("1", "Identify other", ("identify", "broken.toml", "-o", "van/new"), folder, "running")
+    with pytest.raises(InputError, match="“Identify other” writes"):
+        check_output(workspace, jobs, "van/campaign.toml", "van/new")
+    check_output(workspace, jobs, "broken.toml", "van/new")  # the same one: its page is shown
 
 
 @pytest.mark.parametrize("text", ["{", "[]", '{"verdict": 3}', '{"vehicle": {"name": {}}}', "\x00", "[" * 50_000])

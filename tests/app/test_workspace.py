@@ -167,3 +167,15 @@ def test_what_is_no_text_is_refused_without_waiting(workspace: Workspace) -> Non
     for name, reason in (("pipe", "device"), ("car", "folder"), ("latin.toml", "UTF-8"), ("large.toml", "bytes")):
         with pytest.raises(InputError, match=reason):
             workspace.read_text(name)
+
+
+def test_a_name_that_is_too_long_as_a_whole_is_refused_shortly(tmp_path: Path) -> None:
+    with pytest.raises(OutsideError, match="cannot be a file") as refused:
+        Workspace(tmp_path).path("/".join(["ab"] * 3000))
+    assert len(str(refused.value)) < 400
+
+
+def test_a_hidden_upload_is_refused_with_a_remedy(tmp_path: Path) -> None:
+    for name in (".hidden.csv", "a/.b"):
+        with pytest.raises(OutsideError, match="Rename the file first"):
+            Workspace(tmp_path).new_path(name)

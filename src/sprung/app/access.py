@@ -33,6 +33,9 @@ REPORT_POLICY = (
 BODY_PAUSE = 30.0
 """Longest time without a byte of a body, s."""
 
+_USUAL_PORT = 80
+"""Port of HTTP."""
+
 _LARGE = 100_000
 """Bytes from which a form counts as large..."""
 
@@ -104,7 +107,8 @@ class Access:
     def __init__(self, application: ASGIApp, keys: Keys, port: int, body_limits: Mapping[str, int]) -> None:
         self._application = application
         self._keys = keys
-        self._hosts = {f"127.0.0.1:{port}".encode(), f"localhost:{port}".encode()}
+        end = "" if port == _USUAL_PORT else f":{port}"  # browsers leave out the usual one
+        self._hosts = {f"127.0.0.1{end}".encode(), f"localhost{end}".encode()}
         self._cookie = f"sprung-{port}"  # cookies do not tell ports apart
         self._large = asyncio.Semaphore(_LARGE_AT_ONCE)
         self._body_limits = dict(sorted(body_limits.items(), key=lambda item: len(item[0]), reverse=True))
@@ -118,7 +122,9 @@ class Access:
             await send({"type": "websocket.close", "code": 1008})
             return
         headers: list[tuple[bytes, bytes]] = scope["headers"]
-        if not self._is_for_this_server(scope, headers):
+        if not scope["path"].startswith("/"):  # `GET http://other/` is for a proxy, and `GET *` names nothing
+            await refuse(send, 400, "The request names no page of this server.")
+        elif not self._is_for_this_server(scope, headers):
             await refuse(send, 403, "This address is not the one that sprung printed. Open that one.")
         elif (token := _token(scope)) is not None:
             await self._admit(scope, headers, token, send)

@@ -7,6 +7,7 @@ listed here, never a text from a form that begins with a dash.
 
 from __future__ import annotations
 
+import itertools
 import shlex
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
@@ -84,6 +85,17 @@ def arguments(
             raise ValueError(f"the page does not offer --{option} of {command}")
         found += _option(option, value)
     return tuple(found)
+
+
+def output_of(arguments: Sequence[str]) -> str:
+    """Return the file or folder that a command writes, by its name in the folder of the page; empty where it is the default.
+
+    Examples
+    --------
+    >>> output_of(["identify", "car/campaign.toml", "-o", "./-results"])
+    '-results'
+    """
+    return dict(itertools.pairwise(arguments)).get("-o", "").removeprefix("./")
 
 
 def as_typed(arguments: Sequence[str]) -> str:

@@ -7,7 +7,7 @@ import re
 _SPACES = re.compile(r"[\s\u00a0\u2009\u202f_'’]")
 """What people write between groups of three digits."""
 
-_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
+_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", re.ASCII)  # TOML has no digits of other scripts
 
 
 def number_literal(text: str) -> str | None:

@@ -11,13 +11,10 @@ from dataclasses import dataclass
 from pathlib import PurePosixPath
 from typing import Any
 
-from sprung.app.result_files import folder_of, stored_result
+from sprung.app.result_files import MOST_OPENED, campaign_of, folder_of, stored_result
 from sprung.app.workspace import Entry, Listing, OutsideError, Workspace, inside, parent_of
 from sprung.errors import InputError
 from sprung.files import NO_RECORDINGS
-
-_MOST_OPENED = 200
-"""Most campaign files and results that are opened for what they say, the newest first."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +34,7 @@ class CampaignEntry:
     modified
         Time of the last change, s since 1970.
     results
-        The results folder beside it, if there is one.
+        The newest results folder that was made from it, if there is one.
     """
 
     name: str
@@ -61,12 +58,15 @@ class ResultEntry:
         As results.json says; empty where it cannot be read.
     modified
         Time at which it was written, s since 1970.
+    campaign
+        The campaign file from which it was made; empty where that is not known.
     """
 
     name: str
     vehicle: str
     verdict: str
     modified: float
+    campaign: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,8 +124,8 @@ def folder_content(workspace: Workspace) -> FolderContent:
         parent_of(entry.name) for entry in listing.entries if PurePosixPath(entry.name).name == "check.html"
     }
     own = [entry for entry in listing.entries if not any(_is_in(entry.name, folder) for folder in made if folder)]
-    beside = {parent_of(result.name): result for result in reversed(results)}
-    campaigns = tuple(_campaigns(workspace, own, beside))
+    newest = {result.campaign: result for result in reversed(results)}
+    campaigns = tuple(_campaigns(workspace, own, newest))
     recordings = tuple(_recordings(own, {campaign.name for campaign in campaigns}))
     folders = ("", *(entry.name for entry in own if entry.is_folder and entry.name not in made))
     return FolderContent(campaigns, recordings, results, folders, listing.is_complete)
@@ -135,7 +135,7 @@ def _campaigns(
     workspace: Workspace, entries: list[Entry], results: Mapping[str, ResultEntry]
 ) -> Iterator[CampaignEntry]:
     files = [entry for entry in entries if entry.name.endswith(".toml") and not entry.is_folder]
-    for entry in sorted(files, key=lambda entry: -entry.modified)[:_MOST_OPENED]:
+    for entry in sorted(files, key=lambda entry: -entry.modified)[:MOST_OPENED]:
         document, fault = _read_toml(workspace, entry.name)
         if "parameters" in document or not (fault or {"drop", "sensor", "vehicle", "known"} & document.keys()):
             continue  # a vehicle file of `sprung simulate`, or another program's
@@ -148,7 +148,7 @@ def _campaigns(
             _gaps(document),
             fault,
             entry.modified,
-            results.get(parent_of(entry.name)),
+            results.get(entry.name),
         )
 
 
@@ -171,13 +171,15 @@ def _gaps(node: Any) -> int:
 
 
 def _results(workspace: Workspace, listing: Listing) -> Iterator[ResultEntry]:
+    names = {entry.name for entry in listing.entries}
     found = [(entry, folder) for entry in listing.entries if (folder := folder_of(entry.name)) is not None]
     for number, (entry, folder) in enumerate(sorted(found, key=lambda pair: -pair[0].modified)):
-        document = stored_result(workspace, folder) if number < _MOST_OPENED else {}
+        document = stored_result(workspace, folder) if number < MOST_OPENED else {}
         vehicle, verdict = document.get("vehicle"), document.get("verdict")
         name = vehicle.get("name") if isinstance(vehicle, dict) else vehicle
         state = verdict.get("state") if isinstance(verdict, dict) else ""
-        yield ResultEntry(folder, str(name or ""), str(state or ""), entry.modified)
+        campaign = campaign_of(document, folder, names)
+        yield ResultEntry(folder, str(name or ""), str(state or ""), entry.modified, campaign)
 
 
 def _recordings(entries: list[Entry], campaigns: set[str]) -> Iterator[RecordingFolder]:

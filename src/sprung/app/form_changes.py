@@ -13,7 +13,7 @@ from sprung.app.decimals import number_literal
 from sprung.app.toml_spans import Place
 from sprung.errors import Problem
 
-_DATE = re.compile(r"(\d{4})-(\d{1,2})-(\d{1,2})|(\d{1,2})\.\s*(\d{1,2})\.\s*(\d{4})")
+_DATE = re.compile(r"(\d{4})-(\d{1,2})-(\d{1,2})|(\d{1,2})\.\s*(\d{1,2})\.\s*(\d{4})", re.ASCII)
 
 
 @dataclass(frozen=True)
@@ -64,7 +64,20 @@ def understand(form: CampaignForm, entered: Mapping[str, Sequence[str]]) -> Ente
                 changes += _changes(each, [value.strip() for value in given if value is not None])
         except _NotUnderstoodError as error:
             problems[str(error)] = error.problem
+    changes += _renamed(form, changes)
     return Entered(tuple(_without_placeholders(changes, form.placeholders)), problems)
+
+
+def _renamed(form: CampaignForm, changes: Sequence[Change]) -> Iterator[Change]:
+    """Yield the changes by which drops keep a load that has a new name, unless another load was chosen for them."""
+    changed = {change.place: change.value for change in changes}
+    names = {each.place: each.parts[0].value for each in form.fields() if each.place[::2] == ("load", "name")}
+    new = {
+        old: changed[place] for place, old in names.items() if changed.get(place) and [*names.values()].count(old) == 1
+    }
+    for each in form.fields():
+        if each.place[::2] == ("drop", "load") and each.place not in changed and each.parts[0].value in new:
+            yield Change(each.place, new[each.parts[0].value])
 
 
 def _without_placeholders(changes: Sequence[Change], placeholders: Collection[Place]) -> Iterator[Change]:

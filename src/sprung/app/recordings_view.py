@@ -77,7 +77,8 @@ def channels(files: Mapping[str, str]) -> list[dict[str, Any]]:
             table, _ = _table(path)
             first, last = _time_at(table, 0), _time_at(table, table.samples - 1)
         except InputError as error:
-            found.append({"file": name, "problem": "; ".join(f"{one.found}. {one.do}" for one in error.problems)})
+            why = " ".join(f"Found {one.found}; expected {one.expected}. {one.do}" for one in error.problems)
+            found.append({"file": name, "problem": why})
             continue
         named = [
             {"name": channel, "unit": unit or ""} for channel, unit in zip(table.channels, table.units, strict=True)

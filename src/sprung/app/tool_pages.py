@@ -97,6 +97,34 @@ def required(request: Request, name: str) -> str:
     return request.query_params[name]
 
 
+def required_campaign(request: Request) -> str:
+    """Return the campaign file that an address names; it exists.
+
+    Raises
+    ------
+    HTTPException
+        400 if none is named, or one that is none; 404 if it does not exist.
+    """
+    name = campaign_name(request)
+    if not request.app.state.workspace.path(name).is_file():
+        raise HTTPException(404, f"There is no file {name}. Draft it from the recordings on the page of the folder.")
+    return name
+
+
+def campaign_name(request: Request) -> str:
+    """Return the name of the campaign file in an address; no recording can be opened, or overwritten, as one.
+
+    Raises
+    ------
+    HTTPException
+        400 if it is missing, or not that of a campaign file.
+    """
+    name = required(request, "campaign")
+    if not name.endswith(".toml"):
+        raise HTTPException(400, f"{name} is no campaign file, whose name ends in .toml.")
+    return name
+
+
 def read_number(text: str, where: str, low: float, high: float, what: str) -> float | None:
     """Return the number in a field; its decimals may follow a point or a comma.
 

@@ -28,6 +28,9 @@ LARGEST_TEXT = 500_000
 _MOST = 20_000
 """Most entries of a listing."""
 
+_SHOWN = 200
+"""Most characters of a name that are shown where it is refused."""
+
 _LONGEST = 255
 """Longest name of a file, bytes."""
 
@@ -125,17 +128,19 @@ class Workspace:
             If it leads out of the folder, also by a link; if a part of it is hidden; if it cannot be a name.
         """
         parts = name.split("/") if name else []
+        shown = repr(name if len(name) <= _SHOWN else f"{name[:_SHOWN]}...")
         if any(not _is_plain(part) for part in parts):
-            raise OutsideError(
-                f"{name!r} is not the name of a file in {self.folder.name}. Choose a file from the page."
-            )
+            raise OutsideError(f"{shown} is not the name of a file in {self.folder.name}. Choose a file from the page.")
         try:
             path = self.folder.joinpath(*parts).resolve()
+            with suppress(FileNotFoundError, NotADirectoryError, PermissionError):
+                path.lstat()  # nothing else finds that the whole is too long
         except (OSError, RuntimeError, ValueError) as error:  # a link to itself, a name that is too long
-            raise OutsideError(f"{name!r} cannot be a file in {self.folder.name} ({error}).") from error
+            why = getattr(error, "strerror", None) or type(error).__name__
+            raise OutsideError(f"{shown} cannot be a file in {self.folder.name} ({why}).") from error
         if not path.is_relative_to(self.folder):
             raise OutsideError(
-                f"{name!r} leads out of the folder {self.folder.name}. Start sprung in a folder above both."
+                f"{shown} leads out of the folder {self.folder.name}. Start sprung in a folder above both."
             )
         return path
 
@@ -147,6 +152,8 @@ class Workspace:
         OutsideError
             As for `path`, or if the name cannot be used elsewhere or the folder does not exist.
         """
+        if any(part.startswith(".") for part in name.split("/")):
+            raise OutsideError(f"{name!r} would be hidden, as its name begins with a full stop. Rename the file first.")
         path = self.path(name)
         if path == self.folder or _UNPORTABLE.search(name.rpartition("/")[2]):
             raise OutsideError(f"{name!r} is not a name that every system permits. Rename the file first.")

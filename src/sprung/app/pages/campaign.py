@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import json
 import shlex
 from collections.abc import Mapping
@@ -19,16 +18,18 @@ from starlette.routing import Route
 from sprung.app.commands import arguments, as_typed
 from sprung.app.forms import Form, read_form
 from sprung.app.queries import queries_of
-from sprung.app.rendering import render
-from sprung.app.tool_pages import required
-from sprung.app.workspace import NEW, ChangedError, OutsideError, Workspace
+from sprung.app.rendering import render, wants_page
+from sprung.app.result_files import default_results
+from sprung.app.text_difference import with_line_ends
+from sprung.app.tool_pages import campaign_name, required
+from sprung.app.workspace import NEW, ChangedError, OutsideError, Workspace, inside, parent_of
 from sprung.errors import InputError, Problem
 
 
 async def show(request: Request) -> Response:
     """Answer with the page of a campaign file, as its form or as text."""
     workspace: Workspace = request.app.state.workspace
-    name = _campaign(request)
+    name = campaign_name(request)
     text, version = workspace.read_text(name)
     if version == NEW:
         raise HTTPException(404, f"There is no file {name}. Draft it from the recordings on the page of the folder.")
@@ -38,50 +39,84 @@ async def show(request: Request) -> Response:
         view = await _form_view(request, name, text)
     except InputError as error:  # no TOML: only its text can be shown
         return await _text_page(request, name, text, version, text, error.problems)
-    return _form_page(request, name, view, version, text, request.query_params.get("focus", ""))
+    return await _form_page(request, name, view, version, text, request.query_params.get("focus", ""))
+
+
+_SAVES = frozenset({"save", "save over"})
+"""Buttons that save."""
 
 
 async def change(request: Request) -> Response:
-    """Save what was entered, or show the form again with what a button added or removed."""
-    workspace: Workspace = request.app.state.workspace
-    name = _campaign(request)
+    """Save what was entered, or show the form again with what a button added or removed.
+
+    A script, which does not ask for a page, learns only whether it was saved; if not, the browser asks again for the page that
+    shows why.
+    """
+    name = campaign_name(request)
     form = await read_form(request)
-    action, version, original = form.text("action") or "save", form.text("version"), _hidden_text(form, "original")
+    action, version, original = form.text("action", "save"), form.text("version"), _hidden_text(form, "original")
     if "text" in form:
         return await _change_text(request, name, form, action, version, original)
-    save = action in {"save", "save over"}
+    if action == "add known":
+        action += f" {form.text('quantity')}"
+    if action not in _SAVES and not wants_page(request):
+        return JSONResponse({"saved": False})
+    return await _change_form(request, name, form, action, version, original)
+
+
+async def _change_form(request: Request, name: str, form: Form, action: str, version: str, original: str) -> Response:
+    save = action in _SAVES
     try:
         view = await _form_view(
             request, name, _hidden_text(form, "base"), form, "" if save or action == "as text" else action
         )
     except InputError as error:
         view = await _form_view(request, name, _hidden_text(form, "base"), form)
-        return _form_page(request, name, view, version, original, "", error.problems)
+        return await _form_page(request, name, view, version, original, "", error.problems)
+    meanwhile = "meanwhile" in form
     if action == "as text" and not view["unclear"]:
-        return await _text_page(request, name, view["text"], version, original)
+        return await _text_page(request, name, view["text"], version, original, meanwhile=meanwhile)
+    problems: tuple[Problem, ...] = ()
     if save and not view["unclear"]:
         try:
-            workspace.write_text(name, view["text"], version)
-        except ChangedError:
-            return _conflict(request, name, view["text"])
-        return RedirectResponse(f"/campaign?{urlencode({'campaign': name, 'saved': 'yes'})}", 303)
-    return _form_page(request, name, view, version, original, _focus(action, view))
+            return await _save(request, name, view["text"], version)
+        except InputError as error:
+            if not wants_page(request):
+                raise
+            problems = error.problems
+    elif save and not wants_page(request):
+        return JSONResponse({"saved": False})
+    focus = _focus(action, view)
+    return await _form_page(request, name, view, version, original, focus, problems, meanwhile=meanwhile)
+
+
+async def _save(request: Request, name: str, text: str, version: str, **query: str) -> Response:
+    """Save a text, unless the file has changed meanwhile, which has a page of its own; a script stays on its page."""
+    try:
+        version = request.app.state.workspace.write_text(name, text, version)
+    except ChangedError:
+        return await _conflict(request, name, text) if wants_page(request) else JSONResponse({"saved": False})
+    if wants_page(request):
+        return RedirectResponse(f"/campaign?{urlencode({'campaign': name, **query, 'saved': 'yes'})}", 303)
+    return JSONResponse({"saved": True, "version": version, "text": text})
 
 
 async def live(request: Request) -> Response:
     """Answer with the problems, gaps and sketch of what was entered, without saving it."""
-    name = _campaign(request)
+    name = campaign_name(request)
     form = await read_form(request)
     original = _hidden_text(form, "original")
     path = str(request.app.state.workspace.path(name))
     if "text" in form:
+        state = ""
+        text = _as_before(form.get("text", [""])[0], original)
         try:
-            text = _as_before(form.get("text", [""])[0], original)
             found = await queries_of(request).ask("form", "form_view:text_view", path=path, text=text)
         except InputError as error:
             found = {"problems": [asdict(problem) for problem in error.problems], "missing": []}
-        state = state_sentence(len(found["problems"]), len(found["missing"]))
-        return JSONResponse({**found, "state": state, "diff": _difference(original, text)})
+            state = _UNREADABLE
+        state = state or state_sentence(len(found["problems"]), len(found["missing"]))
+        return JSONResponse({**found, "state": state, "diff": await _difference(request, original, text)})
     view = await _form_view(request, name, _hidden_text(form, "base"), form)
     fields = {}
     groups = {}
@@ -102,14 +137,14 @@ async def live(request: Request) -> Response:
             "general": [*map(sentence, view["form"]["problems"]), *view["refused"]],
             "state": state_sentence(view["form"]["faulty"], view["form"]["missing"]),
             "sketch": view["sketch"],
-            "diff": _difference(original, view["text"]),
+            "diff": await _difference(request, original, view["text"]),
         }
     )
 
 
 async def drop(request: Request) -> Response:
     """Answer with the picture of one drop's recording."""
-    name = _campaign(request)
+    name = campaign_name(request)
     workspace: Workspace = request.app.state.workspace
     form = await read_form(request)
     index = required(request, "drop")
@@ -125,26 +160,20 @@ async def drop(request: Request) -> Response:
     return JSONResponse(found)
 
 
-def _campaign(request: Request) -> str:
-    """Return the name of the campaign file; no recording can be opened, or overwritten, as one."""
-    name = required(request, "campaign")
-    if not name.endswith(".toml"):
-        raise HTTPException(400, f"{name} is no campaign file, whose name ends in .toml.")
-    return name
-
-
 async def _change_text(request: Request, name: str, form: Form, action: str, version: str, original: str) -> Response:
     text = _as_before(form.get("text", [""])[0], original)
-    if action not in {"save", "save over"}:
-        try:
-            return _form_page(request, name, await _form_view(request, name, text), version, original, "")
-        except InputError as error:
-            return await _text_page(request, name, text, version, original, error.problems)
+    meanwhile = "meanwhile" in form
+    if action not in _SAVES and not wants_page(request):
+        return JSONResponse({"saved": False})
     try:
-        request.app.state.workspace.write_text(name, text, version)
-    except ChangedError:
-        return _conflict(request, name, text)
-    return RedirectResponse(f"/campaign?{urlencode({'campaign': name, 'as': 'text', 'saved': 'yes'})}", 303)
+        if action in _SAVES:
+            return await _save(request, name, text, version, **{"as": "text"})
+        view = await _form_view(request, name, text)
+        return await _form_page(request, name, view, version, original, "", meanwhile=meanwhile)
+    except InputError as error:
+        if not wants_page(request):
+            raise
+        return await _text_page(request, name, text, version, original, error.problems, meanwhile=meanwhile)
 
 
 async def _form_view(
@@ -163,7 +192,7 @@ def _inputs(form: Form) -> dict[str, list[str]]:
     return {key: values for key, values in form.items() if "." in key}
 
 
-def _form_page(
+async def _form_page(
     request: Request,
     name: str,
     view: Mapping[str, Any],
@@ -171,10 +200,11 @@ def _form_page(
     original: str,
     focus: str,
     problems: tuple[Problem, ...] = (),
+    meanwhile: bool = False,
 ) -> Response:
     drawings = [{**each, "svg": Markup(each["svg"])} for each in view["sketch"]["drawings"]]  # noqa: S704 (escaped there)
     groups = view["form"]["groups"]
-    return _page(
+    return await _page(
         request,
         "campaign.html",
         name,
@@ -195,35 +225,45 @@ def _form_page(
         state=state_sentence(view["form"]["faulty"], view["form"]["missing"]),
         focus=focus,
         problems=problems,
+        meanwhile=meanwhile,
     )
 
 
 async def _text_page(
-    request: Request, name: str, text: str, version: str, original: str, problems: tuple[Problem, ...] = ()
+    request: Request,
+    name: str,
+    text: str,
+    version: str,
+    original: str,
+    problems: tuple[Problem, ...] = (),
+    meanwhile: bool = False,
 ) -> Response:
-    missing: list[Any] = []
-    found = [asdict(problem) for problem in problems]
-    if not problems:
-        try:
-            path = str(request.app.state.workspace.path(name))
-            view = await queries_of(request).ask("form", "form_view:text_view", path=path, text=text)
-            found, missing = view["problems"], view["missing"]
-        except InputError as error:
-            found = [asdict(problem) for problem in error.problems]
-    return _page(
+    """Answer with the text of the file; with reasons for which what was asked for is not possible, if there are some."""
+    try:
+        path = str(request.app.state.workspace.path(name))
+        view = await queries_of(request).ask("form", "form_view:text_view", path=path, text=text)
+        found, missing = view["problems"], view["missing"]
+        state = state_sentence(len(found), len(missing))
+    except InputError as error:
+        found, missing, state = [asdict(problem) for problem in error.problems], [], _UNREADABLE
+        problems = tuple(problem for problem in problems if problem not in error.problems)
+    return await _page(
         request,
         "campaign_text.html",
         name,
         version,
         original,
         text,
+        status=400 if problems else 200,
+        refusals=problems,
         problems=found,
         gaps=missing,
-        state=state_sentence(len(found), len(missing)),
+        state=state,
+        meanwhile=meanwhile,
     )
 
 
-def _page(
+async def _page(
     request: Request,
     template: str,
     name: str,
@@ -236,7 +276,10 @@ def _page(
     workspace = request.app.state.workspace
     commands, outside = [f"$EDITOR {shlex.quote(name)}"], ""
     try:
-        commands += [as_typed(arguments(workspace, command, name)) for command in ("check", "identify", "plan")]
+        output = default_results(workspace, name)
+        own = None if output == inside(parent_of(name), "results") else output
+        outputs = {"check": None, "identify": own, "plan": None}
+        commands += [as_typed(arguments(workspace, command, name, output=o)) for command, o in outputs.items()]
     except OutsideError as error:  # it can be mended here, but not be run
         outside = str(error)
     return render(
@@ -248,7 +291,7 @@ def _page(
         base=json.dumps(text),  # line ends of a form are changed by browsers, those in JSON are not
         original=json.dumps(original),
         text=text,
-        diff=_difference(original, text),
+        diff=await _difference(request, original, text),
         lines=commands,
         outside=outside,
         saved="saved" in request.query_params,
@@ -256,7 +299,7 @@ def _page(
     )
 
 
-def _conflict(request: Request, name: str, text: str) -> Response:
+async def _conflict(request: Request, name: str, text: str) -> Response:
     """Show both: the file as it is now, and what was to be saved."""
     now, version = request.app.state.workspace.read_text(name)
     return render(
@@ -268,7 +311,7 @@ def _conflict(request: Request, name: str, text: str) -> Response:
         original=json.dumps(now),
         text=text,
         now=now,
-        diff=_difference(now, text),
+        diff=await _difference(request, now, text),
     )
 
 
@@ -285,7 +328,13 @@ def _focus(action: str, view: Mapping[str, Any]) -> str:
     if verb == "add" and kind == "item":
         group = next((group for group in view["form"]["groups"] if group["name"] == rest), None)
         return f"{group['items'][-1]['name']}.mass.value" if group and group["items"] else ""
-    return f"add-{what.split('.')[0]}" if verb == "remove" else ""
+    if verb != "remove":
+        return ""
+    left = [each for group in view["form"]["groups"] for each in group["fields"] if each["name"] == what]
+    if left:  # a field that is empty now
+        return str(left[0]["parts"][0]["name"])
+    load, item, _ = what.partition(".items.")
+    return f"add-item-{load}" if item else f"add-{what.split('.')[0]}"
 
 
 def sentence(problem: Mapping[str, str]) -> str:
@@ -296,6 +345,9 @@ def sentence(problem: Mapping[str, str]) -> str:
 def group_sentence(problem: Mapping[str, str]) -> str:
     """Return a problem of several fields together as a sentence: what they say is seen, not found as a table of the file."""
     return problem["do"] if problem["found"].startswith("{") else sentence(problem)
+
+
+_UNREADABLE = "The file cannot be read. What is missing in it is known once this is corrected."
 
 
 def state_sentence(problems: int, gaps: int) -> str:
@@ -323,16 +375,17 @@ def _hidden_text(form: Form, name: str) -> str:
 
 
 def _as_before(text: str, original: str) -> str:
-    """Return a text from a text field with the line ends of the file."""
-    windows = "\r\n" in original and "\n" not in original.replace("\r\n", "")
+    """Return a text from a text field with the line ends of the file and its byte order mark."""
     mark = "\ufeff" if original.startswith("\ufeff") else ""
-    return mark + (text.replace("\n", "\r\n") if windows else text).removeprefix(mark or "\ufeff")
+    return mark + with_line_ends(text.removeprefix("\ufeff"), original.removeprefix(mark))
 
 
-def _difference(old: str, new: str) -> list[str]:
-    """Return the lines of a file that are changed, as ``diff -u`` shows them."""
-    lines = difflib.unified_diff(old.splitlines(), new.splitlines(), n=1, lineterm="")
-    return [line for line in lines if not line.startswith(("---", "+++"))]
+async def _difference(request: Request, old: str, new: str) -> list[str]:
+    """Return the lines of a file that are changed; the server answers others while two long texts are compared."""
+    if old == new:
+        return []
+    lines: list[str] = await queries_of(request).ask("form", "text_difference:difference", old=old, new=new)
+    return lines
 
 
 routes = (

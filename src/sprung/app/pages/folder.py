@@ -55,14 +55,15 @@ def size_text(size: float) -> str:
 
     Examples
     --------
-    >>> [size_text(size) for size in (0, 950, 12_345, 5_000_000_000)]
-    ['0 B', '950 B', '12 kB', '5.0 GB']
+    >>> [size_text(size) for size in (0, 950, 12_345, 1_270_000, 5_000_000_000)]
+    ['0 B', '950 B', '12 kB', '1.3 MB', '5.0 GB']
     """
-    for unit in ("B", "kB", "MB"):
-        if size < 1000:
-            return f"{size:.0f} {unit}"
-        size /= 1000
-    return f"{size:.1f} GB"
+    unit = "B"
+    for larger in ("kB", "MB", "GB"):
+        if round(size) < 1000:
+            break
+        size, unit = size / 1000, larger
+    return f"{size:.1f} {unit}" if unit != "B" and size < 10 else f"{size:.0f} {unit}"
 
 
 def date_text(seconds: float) -> str:

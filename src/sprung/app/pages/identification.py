@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 from urllib.parse import urlencode
 
@@ -10,13 +10,14 @@ from starlette.requests import Request
 from starlette.responses import RedirectResponse, Response
 from starlette.routing import Route
 
-from sprung.app.commands import arguments, as_typed
+from sprung.app.commands import arguments, as_typed, output_of
 from sprung.app.forms import Form, read_form
-from sprung.app.jobs import Job
+from sprung.app.jobs import Job, Jobs
 from sprung.app.pages.folder import date_text
-from sprung.app.result_files import results_path, stored_result
-from sprung.app.tool_pages import required, show_tool, start_tool
-from sprung.app.workspace import Workspace, inside, parent_of
+from sprung.app.result_files import default_results, results_path, stored_result
+from sprung.app.tool_pages import job_of, required, show_tool, start_tool
+from sprung.app.workspace import OutsideError, Workspace, inside, parent_of
+from sprung.errors import InputError, Problem
 
 _TITLES = {"check": "Check", "identify": "Identify"}
 
@@ -50,14 +51,26 @@ def show_identification(request: Request) -> Response:
     """Answer with the options of an identification, or the job that does it."""
     workspace: Workspace = request.app.state.workspace
     name = required(request, "campaign")
-    output = request.query_params.get("output") or inside(parent_of(name), "results")
+    job = job_of(request)
+    output = output_of(job.arguments) if job else request.query_params.get("output", "")
+    output = output or default_results(workspace, name)
     results_path(workspace, output)
+    return _identification_page(request, name, output)
+
+
+def _identification_page(
+    request: Request, name: str, output: str, entered: str = "", problems: Sequence[Problem] = ()
+) -> Response:
+    """Answer with the page; `entered` is a results folder that cannot be used, for the reason among the problems."""
+    workspace: Workspace = request.app.state.workspace
     verdict = _verdict_in(workspace, output)
     return _show(
         request,
         "identify.html",
         name,
+        problems=problems,
         output=output,
+        entered=entered or output,
         verdict=verdict,
         existing_date=date_text(workspace.path(inside(output, "results.json")).stat().st_mtime) if verdict else "",
         line=as_typed(arguments(workspace, "identify", name, output=output)),
@@ -72,8 +85,34 @@ async def identify(request: Request) -> Response:
         "fall": {"yes": True, "no": False}.get(form.text("fall")),
         "force": form.text("force") == "yes" or None,
     }
-    output = form.text("output").strip("/") or inside(parent_of(required(request, "campaign")), "results")
+    workspace: Workspace = request.app.state.workspace
+    name, entered = required(request, "campaign"), form.text("output")
+    default = default_results(workspace, name)
+    output = entered.removesuffix("/") or default
+    try:
+        check_output(workspace, request.app.state.jobs, name, output)
+    except InputError as error:
+        return _identification_page(request, name, default, entered, error.problems)
     return _start(request, "identify", options, output)
+
+
+def check_output(workspace: Workspace, jobs: Jobs, campaign: str, output: str) -> None:
+    """Check that a folder can take a result: in the folder of the page, without other files, and not about to be written."""
+    where, do = "Results folder", "Enter another one, such as results-2."
+    try:
+        path = results_path(workspace, output)
+    except OutsideError as error:
+        expected = f"the name of a folder in {workspace.folder.name}"
+        raise InputError([Problem(where, f"'{output}'", expected, do)]) from error
+    own = {entry.name.rpartition("/")[2] for entry in (workspace.listing(output, 0).entries if path.is_dir() else ())}
+    if path.is_file() or (own and "results.json" not in own):
+        expected = "a new folder, or one with a result"
+        raise InputError([Problem(where, f"'{output}', which has other files", expected, do)])
+    begin = arguments(workspace, "identify", campaign)
+    for job in jobs.all():
+        is_other = job.arguments[0] == "identify" and job.arguments[: len(begin)] != begin
+        if is_other and not job.is_over and output_of(job.arguments) == output:
+            raise InputError([Problem(where, f"'{output}', into which “{job.title}” writes", "another folder", do)])
 
 
 def _profiled(form: Form) -> list[str]:
@@ -95,18 +134,25 @@ def _show(request: Request, template: str, name: str, **context: Any) -> Respons
     command = request.url.path.strip("/")
     if not workspace.path(name).is_file():
         return RedirectResponse(f"/campaign?{urlencode({'campaign': name})}", 303)  # which says that there is none
-    if "job" not in request.query_params:
+    if "job" not in request.query_params and request.method != "POST":
         running = _running(request, command, name)
         if running is not None:
-            return RedirectResponse(f"/{command}?{urlencode({'campaign': name, 'job': running.id})}", 303)
+            output = output_of(running.arguments)
+            query = {"campaign": name} | ({"output": output} if output else {}) | {"job": running.id}
+            return RedirectResponse(f"/{command}?{urlencode(query)}", 303)
     return show_tool(request, template, campaign=name, **context)
 
 
 def _running(request: Request, command: str, name: str) -> Job | None:
-    """Return the job that has been started for a campaign in another tab, or before this page was loaded again."""
+    """Return the job that has been started for a campaign in another tab, or before this page was loaded again.
+
+    Where the address names a results folder, only the one that writes into it.
+    """
+    wanted_output = request.query_params.get("output")
     wanted = arguments(request.app.state.workspace, command, name)
     jobs: tuple[Job, ...] = request.app.state.jobs.all()
-    return next((job for job in jobs if not job.is_over and job.arguments[: len(wanted)] == wanted), None)
+    own = [job for job in jobs if not job.is_over and job.arguments[: len(wanted)] == wanted]
+    return next((job for job in own if wanted_output in {None, output_of(job.arguments)}), None)
 
 
 def _sources(workspace: Workspace, name: str) -> list[Any]:

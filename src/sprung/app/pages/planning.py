@@ -9,14 +9,14 @@ from starlette.routing import Route
 from sprung.app.commands import arguments
 from sprung.app.forms import Form, read_form
 from sprung.app.jobs import Job
-from sprung.app.tool_pages import job_of, read_number, required, show_tool, start_tool
+from sprung.app.tool_pages import job_of, read_number, required_campaign, show_tool, start_tool
 from sprung.app.workspace import Workspace, inside, parent_of
 from sprung.errors import InputError, Problem
 
 
 def show_validation(request: Request) -> Response:
     """Answer with the validation that the address names: the text of the command, and its drawings."""
-    campaign = required(request, "campaign")
+    campaign = required_campaign(request)
     workspace: Workspace = request.app.state.workspace
     folder = _validation_folder(campaign)
     drawings = [
@@ -29,7 +29,7 @@ def show_validation(request: Request) -> Response:
 
 async def validate(request: Request) -> Response:
     """Cross-validate a campaign; numbers and drawings are written beside it."""
-    campaign = required(request, "campaign")
+    campaign = required_campaign(request)
     folder = _validation_folder(campaign)
     command = arguments(request.app.state.workspace, "validate", campaign, output=folder)
     return start_tool(request, command, f"Validate {campaign}", {"campaign": campaign})
@@ -55,7 +55,7 @@ def show_plan(request: Request) -> Response:
 async def plan(request: Request) -> Response:
     """Plan the next measurement of a campaign, or the first of a vehicle."""
     form = await read_form(request)
-    campaign = required(request, "campaign")
+    campaign = required_campaign(request)
     fields = {name: form.text(name) for name in ("wanted", "rate", "noise", "terms")}
     try:
         command = arguments(request.app.state.workspace, "plan", campaign, options=_options(form))
@@ -80,7 +80,7 @@ def _plan_page(request: Request, fields: dict[str, str], problems: tuple[Problem
         request,
         "plan.html",
         problems=problems,
-        campaign=required(request, "campaign"),
+        campaign=required_campaign(request),
         fields=fields,
         next_step=_next_step(job),
     )

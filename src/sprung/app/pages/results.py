@@ -9,7 +9,7 @@ from starlette.routing import Route
 
 from sprung.app.commands import arguments, as_typed
 from sprung.app.queries import queries_of
-from sprung.app.result_files import campaign_beside, results_folders, results_path
+from sprung.app.result_files import campaign_of, results_folders, results_path, stored_result
 from sprung.app.tool_pages import required, show_tool, start_tool
 from sprung.app.workspace import inside
 
@@ -28,7 +28,8 @@ async def show(request: Request) -> Response:
     folder = results_path(workspace, name)
     result = await queries_of(request).ask("form", "result_view:summary", folder=str(folder))
     files = [(inside(name, file), text) for file, text in _FILES if workspace.path(inside(name, file)).is_file()]
-    campaign = campaign_beside(name, [entry.name for entry in workspace.listing().entries])
+    names = {entry.name for entry in workspace.listing().entries}
+    campaign = campaign_of(stored_result(workspace, name), name, names)
     lines = [as_typed(arguments(workspace, "report", name))]
     if campaign:
         lines.insert(0, as_typed(arguments(workspace, "identify", campaign, output=name)))

@@ -1,10 +1,11 @@
 // The form of a campaign: checked while somebody types, sensors moved in the sketch, recordings with their limits.
+import { setUpSaving } from "./saving.js";
 import { setUpSketch } from "./sketch.js";
 import { setUpRecordings } from "./drops.js";
 
 const form = document.querySelector("#campaign");
 const QUIET = 350; // ms without a key, after which what was typed is checked
-let timer = 0, asked = 0, changed = document.querySelector("#diff").textContent !== "", sent = false;
+let timer = 0, asked = 0;
 
 const byData = (name, value) => form.querySelector(`[data-${name}="${CSS.escape(value)}"]`);
 const body = () => new URLSearchParams(new FormData(form));
@@ -62,29 +63,16 @@ function show(found) {
     return line;
   });
   document.querySelector("#where").replaceChildren(...where);
-  document.querySelector("#diff").textContent = found.diff.join("\n");
-  document.querySelector("#changes").hidden = !found.diff.length;
-  changed = found.diff.length > 0;
+  saving.differs(found.diff);
   sketch.replace(found.sketch);
 }
 
-form.addEventListener("input", () => { changed = true; check(); });
-form.addEventListener("submit", (event) => {
-  sent = true;
-  const from = event.submitter?.dataset.from;
-  if (from) event.submitter.value = document.getElementById(from).value;
-});
-addEventListener("beforeunload", (event) => { if (changed && !sent) event.preventDefault(); });
-addEventListener("keydown", (event) => {
-  if (event.key !== "s" || !(event.ctrlKey || event.metaKey)) return;
-  event.preventDefault();
-  form.requestSubmit(form.querySelector("button.main[value=save]"));
-});
 // Return in a field saves nothing by accident: it goes on to the check.
 form.addEventListener("keydown", (event) => {
   if (event.key === "Enter" && event.target.matches("input:not([type=checkbox])")) event.preventDefault();
 });
 
+const saving = setUpSaving(form, check);
 const sketch = setUpSketch(form, check);
 setUpRecordings(form, body);
 // What was typed before this script was loaded.

@@ -1,16 +1,10 @@
 // The text of a campaign file, checked while somebody types.
+import { setUpSaving } from "./saving.js";
+
 const form = document.querySelector("#campaign");
 const QUIET = 400; // ms without a key, after which what was typed is checked
-let timer = 0, asked = 0, changed = document.querySelector("#diff").textContent !== "", sent = false;
-
-form.addEventListener("input", () => { changed = true; clearTimeout(timer); timer = setTimeout(ask, QUIET); });
-form.addEventListener("submit", () => { sent = true; });
-addEventListener("beforeunload", (event) => { if (changed && !sent) event.preventDefault(); });
-addEventListener("keydown", (event) => {
-  if (event.key !== "s" || !(event.ctrlKey || event.metaKey)) return;
-  event.preventDefault();
-  form.requestSubmit(form.querySelector("button.main"));
-});
+let timer = 0, asked = 0;
+const saving = setUpSaving(form, () => { clearTimeout(timer); timer = setTimeout(ask, QUIET); });
 
 // What was typed before this script was loaded.
 const text = form.querySelector("#text");
@@ -24,9 +18,7 @@ async function ask() {
   document.querySelector("#state").textContent = found.state;
   fill("#general", found.problems, (one) => `found ${one.found}; expected ${one.expected}. ${one.do}`);
   fill("#gaps", found.missing, (one) => one.expected);
-  document.querySelector("#diff").textContent = found.diff.join("\n");
-  document.querySelector("#changes").hidden = !found.diff.length;
-  changed = found.diff.length > 0;
+  saving.differs(found.diff);
 }
 
 function fill(list, entries, text) {
