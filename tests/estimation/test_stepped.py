@@ -11,16 +11,21 @@ import sprung
 from sprung.campaign import Campaign
 from sprung.estimation import (
     FitResult,
+    UsualValue,
+    estimate_of,
     fit_linear,
     fit_nonlinear,
+    scale_of,
     score_linear_term,
     score_nonlinear_terms,
     score_stepped_terms,
+    uncertainty_of,
     wald_test,
 )
 from sprung.estimation.time_stepping import TimeSteppingObjective
 from sprung.preprocess import FreeDecay, prepare
 from sprung.selection.structure import ModelStructure, choose_structure
+from sprung.uncertainty import KnownValue
 from sprung.vehicle import TABLE_1_CAR, Readout, Vehicle, parameters_of_term
 
 LOAD = {"name": "ballast", "items": [{"mass": 140.0, "position": (-1.0, 0.3, 0.5)}]}
@@ -170,6 +175,27 @@ def test_what_is_lost_without_a_term_does_not_depend_on_how_well_the_scale_is_kn
         assert certain == pytest.approx((0.5 / weighed) ** 2, rel=0.2) if weighed == 0.1 else certain > 1000
     assert lost[0.001] > 1e4
     assert lost[0.1] == pytest.approx(lost[0.001], rel=1e-3)
+
+
+def test_a_usual_value_is_no_weighing() -> None:
+    """A prior on the rates of bars says nothing of the masses; a statement about one of them does."""
+    barred = Vehicle.from_parameters(TABLE_1_CAR.parameters | {"k_af": 2000.0, "k_ar": 2000.0})
+    drops = [{"wheels": wheels} for wheels in (("fl", "fr"), ("fl", "rl"))]
+    other = sprung.simulate(barred, drops=drops, noise=0.02, seed=4)
+    structure = choose_structure(other, "shared", ("anti-roll",))
+    decays, models, sensors = prepare(other).decays, structure.linear_models, other.sensors
+    start, usual = dict(barred.parameters), {"k_af": UsualValue(3000.0, 1.05)}
+    fit = fit_linear(decays, models, sensors, structure.known, start=start, usual=usual)
+    assert fit.problem.priors.usual == usual
+    found = uncertainty_of(fit)
+    assert not scale_of(found).known
+    assert estimate_of(found, structure.known, "m_s").status == "unidentifiable"
+    assert scale_of(found).per_total_mass["k_sf"].std > 0
+    known = {**structure.known, "k_af": KnownValue(2000.0, 100.0)}
+    found = uncertainty_of(fit_linear(decays, models, sensors, known, start=start))
+    mass = estimate_of(found, known, "m_s")
+    assert mass.value is not None
+    assert mass.std == pytest.approx(0.05 * mass.value, rel=0.1)
 
 
 def test_a_friction_that_went_astray_begins_anew_without_a_jolt(

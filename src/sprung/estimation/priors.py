@@ -166,6 +166,11 @@ class PriorsAndConstraints:
         std = std * values[places] / self.coordinates.derivatives(centre)[places]
         return centre[places], np.eye(len(names))[places] / std[:, None]
 
+    @property
+    def usual_rows(self) -> Real:
+        """Derivatives of the usual values' residuals, in standard deviations, shape (value, coordinate)."""
+        return self._usual[1] if self.usual else np.zeros((0, len(self.coordinates.names)))
+
     @cached_property
     def _chosen(self) -> dict[bool, tuple[tuple[str, ...], Real, Real]]:
         """Names, values and scales of the exact statements, and of the others."""

@@ -236,12 +236,12 @@ def per_total_mass(fit: FitResult, gradients: Real) -> Real:
     fit
         The fitted model.
     gradients
-        By the coordinates, shape (quantity, coordinate).
+        By the coordinates, dimensionless, shape (quantity, coordinate).
 
     Returns
     -------
     ndarray
-        Likewise; as given for quantities that do not change with the scale.
+        Dimensionless, shape (quantity, coordinate); as given for quantities that do not change with the scale.
     """
     slopes = fit.problem.priors.coordinates.derivatives(fit.iterate.u)
     total, of_mass = evaluate_quantity("total_mass", fit.names, fit.values)

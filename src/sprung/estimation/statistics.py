@@ -14,6 +14,7 @@ from sprung.estimation.fit_result import FitResult
 from sprung.estimation.linear_fit import STARTS, escape_local_optimum, fit_linear
 from sprung.estimation.priors import scaling_direction
 from sprung.estimation.problem import NO_INFORMATION, RANK
+from sprung.estimation.score_test import per_total_mass
 from sprung.estimation.subspace import canonical_basis
 from sprung.preprocess import FreeDecay
 from sprung.uncertainty import KnownValue
@@ -243,10 +244,14 @@ def _inflater(fit: FitResult) -> Inflater:
 def _directions(fit: FitResult, inflation: float) -> tuple[Real, Real]:
     """Return the information that is there, and its directions in the coordinates; (direction,), (parameter, direction).
 
-    What noise alone adds is subtracted, and what is only rounding beside the largest information counts as none.
+    What noise alone adds is subtracted, and what is only rounding beside the largest information counts as none. Usual values
+    of some parameters are none of the scale: those of a friction, say, would be a weighing that nobody did.
     """
     problem, optimum = fit.problem, fit.iterate
     information, _, null_space = problem.system(optimum, inflation)
+    usual = problem.priors.usual_rows
+    usual, beside = usual @ null_space, per_total_mass(fit, usual) @ null_space
+    information = information + beside.T @ beside - usual.T @ usual
     eigenvalues, vectors = np.linalg.eigh(information)
     rounding = RANK * eigenvalues.max(initial=0.0)
     # A stepped motion follows its initial states: nothing is known of a bias.
