@@ -26,7 +26,7 @@ from sprung.estimation.time_stepping import TimeSteppingObjective
 from sprung.preprocess import FreeDecay, prepare
 from sprung.selection.structure import ModelStructure, choose_structure
 from sprung.uncertainty import KnownValue
-from sprung.vehicle import TABLE_1_CAR, Readout, Vehicle, parameters_of_term
+from sprung.vehicle import TABLE_1_CAR, Readout, Vehicle, parameter_of, parameters_of_term
 
 LOAD = {"name": "ballast", "items": [{"mass": 140.0, "position": (-1.0, 0.3, 0.5)}]}
 
@@ -73,6 +73,37 @@ def test_with_nothing_to_step_it_is_the_linear_likelihood(
     own, other = (one.iterate.at.information for one in (optimum, found))
     scale = np.sqrt(np.outer(np.diag(own), np.diag(own)))
     np.testing.assert_allclose(other[:count, :count] / scale, own / scale, atol=2e-3)
+
+
+@pytest.mark.parametrize("loaded", [False, True])
+def test_only_a_known_mass_gives_the_scale(
+    campaign: Campaign, decays: tuple[FreeDecay, ...], plain: ModelStructure, optimum: FitResult, loaded: bool
+) -> None:
+    """That every mass and rate grows alike changes no motion: without a load the information of it is zero, by drop and by window."""
+    larger = plain.with_terms(("friction",))
+    start = optimum.parameters | {"F_f": 40.0, "F_r": 40.0, "s_f": 2e5, "s_r": 2e5}
+    chosen = [i for i, decay in enumerate(decays) if loaded or decay.load == "empty"]
+    found = fit_nonlinear(
+        [decays[i] for i in chosen],
+        larger.nonlinear_models,
+        campaign.sensors,
+        larger.known | {"m_s": KnownValue(1380.0)},
+        start=start,
+        states=optimum.states[chosen],
+        near=True,
+        most=0,
+    )
+    at = found.iterate.at
+    along = np.array([value * parameter_of(name).scales for name, value in zip(found.names, found.values, strict=True)])
+    windows = at.by_window
+    assert windows is not None
+    of_records = [along @ own @ along for own in (at.information, windows[1].sum(axis=0))]
+    slopes = [own.sum(axis=0) @ along for own in (at.by_drop[0], windows[0])]
+    if loaded:
+        assert min(of_records) > 1e3  # 140 kg of ballast are known
+    else:
+        np.testing.assert_allclose(of_records, 0.0, atol=1e-6)
+        np.testing.assert_allclose(slopes, 0.0, atol=1e-3)
 
 
 def test_scores_are_those_of_the_linear_fit(

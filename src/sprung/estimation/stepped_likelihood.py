@@ -117,7 +117,8 @@ class TimeSteppingAt:
     def by_drop(self) -> tuple[Real, Real]:
         """Gradient and information of each drop; shapes (drop, parameter) and (drop, parameter, parameter)."""
         information, gradient, _ = self._eliminated
-        return gradient, information
+        visible = self.objective.visible_changes(self.values)
+        return gradient @ visible, visible.T @ information @ visible
 
     @cached_property
     def by_window(self) -> tuple[Real, Real]:
@@ -125,6 +126,7 @@ class TimeSteppingAt:
         response = self._eliminated[2]
         # What a change of the parameters is in a drop whose initial state follows it.
         change = np.concatenate([np.tile(np.eye(len(self.values)), (len(response), 1, 1)), response], axis=1)
+        change = change @ self.objective.visible_changes(self.values)
         products = np.einsum("c,wdcij->wdij", self.weights, self.stepped.linearised[0], optimize=True)
         gradient = np.einsum("dup,wdu->wp", change, products[..., :-1, -1], optimize=True)
         information = np.einsum("dup,wduv,dvq->wpq", change, products[..., :-1, :-1], change, optimize=True)

@@ -26,6 +26,7 @@ from sprung.vehicle import (
     coordinates,
     integrate_near,
     layout_of,
+    parameter_of,
 )
 
 Real = NDArray[np.float64]
@@ -127,6 +128,27 @@ class TimeSteppingObjective:
         """1 where a drop has a sample, shape (drop, time)."""
         is_sample: Real = (np.arange(self.records.shape[2]) < self.samples[:, None]).astype(float)
         return is_sample
+
+    @cached_property
+    def shows_scale(self) -> bool:
+        """Whether any record would change if every mass and rate of the vehicle grew alike."""
+        grows = np.array([parameter_of(name).scales for name in self.sensors.names[: self.sensors.shared]])
+        read = self.sensors.rows.affine[:, :, 1:][:, :, grows]
+        return bool(read.any()) or any(model.linear.has_scale for model in self.models_by_kind)
+
+    def visible_changes(self, values: Real) -> Real:
+        """Return what of a change of the parameters any record shows, as a projection, SI, shape (parameter, parameter).
+
+        Where nothing gives the scale, no motion changes with it. Steps, and what is assumed of the memories of friction, keep this
+        symmetry only in part: they would weigh a vehicle that nobody has weighed.
+        """
+        everything = np.eye(len(values))
+        if self.shows_scale:
+            return everything
+        grows = np.array([parameter_of(name).scales for name in self.sensors.names]) & (values != 0)
+        along = np.where(grows, values, 0.0)
+        share = np.divide(1.0, values * np.sum(grows), out=np.zeros(len(values)), where=grows)
+        return everything - np.outer(along, share)
 
     @property
     def state_size(self) -> int:

@@ -15,6 +15,7 @@ from sprung.display import shown
 from sprung.vehicle.elements import Element
 from sprung.vehicle.kinematics import UNCONSTRAINED, Row, coordinates, heave, massive_coordinates, unconstrained
 from sprung.vehicle.layout import LinearLaw
+from sprung.vehicle.nuisances import parameter_of
 
 Array = NDArray[np.float64]
 
@@ -300,6 +301,12 @@ class LinearModel:
     def size(self) -> int:
         """Number of coordinates, n, without those on which no force acts."""
         return len(coordinates(self.names))
+
+    @cached_property
+    def has_scale(self) -> bool:
+        """Whether something in it does not grow with every mass and rate of the vehicle alike, such as the known mass of a load."""
+        grows = np.array([False, *(parameter_of(name).scales for name in self.names)])
+        return bool(np.any(grows[self.products].sum(axis=1) != 1))
 
     @property
     def is_reduced(self) -> bool:
