@@ -18,46 +18,38 @@ from typing import Any
 
 import numpy as np
 import tomli_w
-from pages import arguments, figures, report_progress, run, table, write
+from half_car_rig_page import MASS, page
+from pages import arguments, figures, report_progress, run, write
 
 import sprung
 
-MASS, HALF_DISTANCE = 433.0, 0.75
-"""kg and m, of the rig's data sheet: the scale of everything, which no recording of it shows."""
+HALF_DISTANCE = 0.75
+"""m, of springs and sensors from the middle, of the rig's data sheet."""
 
-SHEET: Mapping[str, float] = {"k_s": 20.5e3, "k_t": 147.2e3, "I_xx": 82.7, "m_u": 56.1}
-"""What the data sheet states beside, SI."""
-
-TERMS = ("tyre-damping", "friction")
-"""Model terms that the recordings need."""
-
-DAMPED_TERMS = (*TERMS, "interconnection")
-"""With the hydraulic dampers; the interconnection has to be stated, as no search tries it."""
+TERMS = ("tyre-damping", "friction", "uneven-friction", "interconnection")
+"""Model terms that the recordings need; the last two have to be stated, as no search tries them."""
 
 UNDAMPED = "damped_0"
-"""The setting without them."""
+"""The setting in which both wheels hop for seconds, so that differences of the sides' rates and damping show too."""
 
-WHEEL = 0.5
-"""Relative standard uncertainty with which the data sheet's unsprung mass is taken: displacements hardly show it apart from the
-gains of the wheels' sensors, and without it a fit may end with wheels heavier than the body."""
+ALIKE: Mapping[str, float] = {"y_s": 0.005, "d_ks": 200.0, "d_kt": 3e3}
+"""Standard uncertainties within which both sides are built alike, SI, some 1 %: without them the differences of rates stand for
+what else the model lacks."""
 
-GAIN = 0.1
-"""Standard uncertainty of the gain of the body's sensors: those of both sides differ by 9 % at rest."""
+WHEEL = (80.0, 40.0)
+"""Unsprung mass and its standard uncertainty, kg: displacements hardly tell it from the gains of the wheels' sensors. The data
+sheet's 56.1 kg are within it."""
 
-SHOWN: Mapping[str, tuple[str, float]] = {
-    "k_s": ("kN/m", 1e3),
-    "k_t": ("kN/m", 1e3),
-    "I_xx": ("kg m²", 1.0),
-    "m_u": ("kg", 1.0),
-    "c_s": ("N s/m", 1.0),
-    "F": ("N", 1.0),
-    "k_x": ("kN/m", 1e3),
-    "c_x": ("kN s/m", 1e3),
-}
-"""Columns of the table: unit, and SI units in it."""
+GAINS: Mapping[str, float] = {"Sprung LH": 0.0, "Sprung RH": 0.1, "Unsprung LH": 0.0, "Unsprung RH": 0.2}
+"""Standard uncertainty of the gain of each sensor. No free vibration shows the gain of all body sensors, or of all wheel
+sensors, so that the left ones are taken to be right."""
 
-SAME = ("k_s", "k_t", "I_xx", "m_u")
-"""What has to be the same in all settings."""
+END = 3.99
+"""s of each recording that are used: the shortest are no longer, and in the others hardly anything moves afterwards."""
+
+SAME_WITH_LOAD = ("k_t", "m_u", "c_t", "y_s", "d_ks", "d_kt", "d_cs")
+"""What an added mass does not change: it is that of the same setting without it, within its error; and the spring rate, which
+sets the scale, exactly."""
 
 
 def main() -> None:
@@ -65,39 +57,60 @@ def main() -> None:
     parser = arguments("A real half-car rig.", campaigns=1)
     parser.add_argument("folder", type=Path, help="the recordings")
     options = parser.parse_args()
-    found: dict[str, dict[str, Any]] = {}
     with tempfile.TemporaryDirectory() as work:
-        paths = [complete(Path(draft.write())) for draft in sprung.draft_campaigns(options.folder, Path(work))]
-        for setting, outcome in run(identified, [(str(path),) for path in paths], options.processes, chunk=1):
-            found[setting] = outcome
-            report_progress(f"{setting}: {outcome['verdict']}")
+        drafts = [Path(draft.write()) for draft in sprung.draft_campaigns(options.folder, Path(work))]
+        found: dict[str, dict[str, Any]] = {}
+        for setting, outcomes in run(identified, [(str(path),) for path in drafts], options.processes, chunk=1):
+            found[setting] = outcomes
+            report_progress(f"{setting}: {outcomes['empty']['verdict']}")
     ordered = dict(sorted(found.items(), key=lambda item: int("".join(filter(str.isdigit, item[0])) or 0)))
-    numbers = {"settings": [{"setting": setting, **outcome} for setting, outcome in ordered.items()]}
+    numbers = {"settings": [{"setting": setting, **outcomes} for setting, outcomes in ordered.items()]}
     write(options.to, "half-car-rig", page(ordered), numbers)
 
 
-def complete(path: Path) -> Path:
-    """Fill the gaps of a drafted campaign file: what the data sheet states, and the drops without a load."""
-    document = tomllib.loads(path.read_text(encoding="utf-8"))
-    wheel = {"value": SHEET["m_u"], "std": WHEEL * SHEET["m_u"]}
-    document["known"] = {"m_s": MASS, "t": HALF_DISTANCE, "m_u": wheel}
-    terms = TERMS if path.parent.name == UNDAMPED else DAMPED_TERMS
+def identified(path: str) -> tuple[str, dict[str, Any]]:
+    """Identify one setting, without a load and then with each."""
+    draft = Path(path)
+    loads = [load["name"] for load in tomllib.loads(draft.read_text(encoding="utf-8")).get("load", [])]
+    known: dict[str, Any] = {"m_s": MASS, "t": HALF_DISTANCE, "m_u": {"value": WHEEL[0], "std": WHEEL[1]}}
+    if draft.parent.name == UNDAMPED:
+        known |= {name: {"value": 0.0, "std": std} for name, std in ALIKE.items()}
+    found = {"empty": outcome_of(sprung.identify(completed(draft, "empty", known)))}
+    estimates = found["empty"]["parameters"]
+    if estimates["k_s"][0] is not None:
+        same = {
+            name: {"value": value, "std": std} for name, (value, std) in estimates.items() if name in SAME_WITH_LOAD
+        }
+        same |= {"k_s": estimates["k_s"][0], "t": HALF_DISTANCE}
+        for load in loads:
+            found[load] = outcome_of(sprung.identify(completed(draft, load, same)))
+    return draft.parent.name, found
+
+
+def completed(draft: Path, load: str, known: Mapping[str, Any]) -> Path:
+    """Write a campaign file of the drops with one load, as if they were empty, with the gaps of the draft filled."""
+    document = tomllib.loads(draft.read_text(encoding="utf-8"))
+    document["known"] = dict(known)
+    terms = (*TERMS, "asymmetry") if draft.parent.name == UNDAMPED else TERMS
     document["model"] = {"tracks": "shared", "extras": list(terms)}
     document.pop("load", None)
-    document["drop"] = [drop for drop in document["drop"] if drop["load"] == "empty"]
+    document["drop"] = [
+        {**drop, "load": "empty", "window": [0.0, END]} for drop in document["drop"] if drop["load"] == load
+    ]
     for sensor in document["sensor"]:
         sensor["tilt_std"] = 0.0
+        sensor["gain_std"] = next(std for place, std in GAINS.items() if f" {place} " in sensor["channel"])
         if sensor["on"] == "body":
             side = 1.0 if " LH" in sensor["channel"] else -1.0
-            sensor |= {"position": [0.0, side * HALF_DISTANCE, 0.5], "position_std": 0.0, "gain_std": GAIN}
+            sensor |= {"position": [0.0, side * HALF_DISTANCE, 0.5], "position_std": 0.0}
+    path = draft.with_name(f"{load}.toml")
     path.write_text(tomli_w.dumps(document), encoding="utf-8")
     return path
 
 
-def identified(path: str) -> tuple[str, dict[str, Any]]:
-    """Identify one setting."""
-    result = sprung.identify(path)
-    return Path(path).parent.name, {
+def outcome_of(result: sprung.Result) -> dict[str, Any]:
+    """Return what the page shows of a result."""
+    return {
         "verdict": result.verdict.state,
         "reasons": list(result.verdict.reasons),
         "faults": sorted({fault.code for fault in result.faults}),
@@ -111,121 +124,6 @@ def identified(path: str) -> tuple[str, dict[str, Any]]:
             for i, channel in enumerate(next(iter(result.series.values())).channels)
         },
     }
-
-
-def agreement(outcomes: Mapping[str, Mapping[str, Any]], name: str) -> tuple[float, float, float, float]:
-    """Return mean, largest difference from it in percent, and in standard errors, and the rise from first to last, percent."""
-    usable = [one for one in outcomes.values() if one["verdict"] != "reject"]
-    values, stds = np.array([one["parameters"][name] for one in usable], dtype=float).T
-    mean = float(np.sum(values / stds**2) / np.sum(stds**-2.0))
-    apart = np.abs(values - mean)
-    return mean, 100 * float(apart.max() / mean), float((apart / stds).max()), 100 * float(values[-1] / values[0] - 1)
-
-
-def page(outcomes: Mapping[str, Mapping[str, Any]]) -> str:
-    """Write the page."""
-    head = ["setting", "verdict", "faults", *(f"{name}, {unit}" for name, (unit, _) in SHOWN.items()), "relaxes in, s"]
-    rows = [_row(setting, outcome) for setting, outcome in outcomes.items()]
-    same = [
-        [
-            name,
-            f"{mean / SHOWN[name][1]:.4g} {SHOWN[name][0]}",
-            f"{part:.1f}",
-            f"{errors:.1f}",
-            f"{rise:+.1f}",
-            f"{SHEET[name] / SHOWN[name][1]:.4g}",
-        ]
-        for name in SAME
-        for mean, part, errors, rise in [agreement(outcomes, name)]
-    ]
-    channels = list(next(iter(outcomes.values()))["residual"])
-    left = [
-        [
-            setting,
-            *(f"{1e3 * one['residual'][c]:.3f} ({100 * one['residual'][c] / one['span'][c]:.2f})" for c in channels),
-        ]
-        for setting, one in outcomes.items()
-    ]
-    sensors = max((list(one["gains"]) for one in outcomes.values()), key=len)
-    gains = [
-        [setting, *(_with_std(*one["gains"].get(c, (None, None)), 1.0) for c in sensors)]
-        for setting, one in outcomes.items()
-    ]
-    reasons = "\n".join(f"- {setting}: {'; '.join(one['reasons'])}" for setting, one in outcomes.items())
-    drops = sum(one["drops"] for one in outcomes.values())
-    return f"""# A real half-car rig
-
-The first recordings here that nature made and not a program: a full-size half-car rig (a body on two wheels, in the roll plane)
-that is lifted in the middle or on its left side and let go, with four displacement sensors, in five settings. Springs, tyres
-and masses are the same in all settings. Does the program find them so?
-
-## Recordings
-
-They are public ("LAB TEST FOLDER" of the repository DARKMOONlite/DS-C_B-Half-Car-Rig-Analysis on GitHub) and without a
-licence, so that nothing of them is in this project. `sprung new FOLDER` drafts one campaign for each setting from the folder as
-it is. {drops} lifts without added masses are identified here. What the folder does not say was filled in from the rig's data
-sheet: the sprung mass, {MASS:g} kg, which gives the scale of everything, the half-distance of springs and sensors,
-{HALF_DISTANCE:g} m, and the unsprung mass, {SHEET["m_u"]:g} kg, with half of it as its standard uncertainty.
-
-What `sprung check` says of every recording: it is spliced from two parts. In the first half second to second all channels
-passed a low-pass of some 50 Hz, and are 8.3 ms late; that part is advanced (fault `splice`). The right sensor of the body
-reads some 9 % less than the left one, so that gains of {100 * GAIN:g} % are allowed for.
-
-## What the rig has that the plain model has not
-
-- **An interconnection of left and right.** The settings, which the recordings' names call damped, hardly change the damping of
-  bounce. They change a rate against roll that relaxes in some tenths of a second, as a fluid line between both sides does.
-- **Dry friction**, without which the wheels' motion is not explained at all.
-- Tyre damping.
-
-## Results
-
-{table(head, rows)}
-
-After ± one standard error, which contains what the model leaves and how far the lifts disagree. What has to be the same, over
-the settings that are not rejected:
-
-{table(["", "mean", "farthest from it, %", "in standard errors", "last setting over the first, %", "data sheet"], same)}
-
-Gains of the sensors, part by which they read too much:
-
-{table(["setting", *sensors], gains)}
-
-What is left, mm root-mean-square (and as a part of the range of the motion, %):
-
-{table(["setting", *channels], left)}
-
-Reasons of the verdicts:
-
-{reasons}
-
-## What is not explained
-
-- Unsprung masses and tyre rates are known only together with the gain of the wheels' sensors, which no free vibration shows: a
-  gain {{math}}`g` with {{math}}`k_t/g` and {{math}}`m_u/g` fits alike. They are stated for sensors that are right within 1 %.
-- The undamped rig (`damped_0`, three series of lifts) is rejected: its wheels move otherwise than the model's, with or
-  without an interconnection.
-- Unsprung masses scatter most, and three or four standard errors in a row are more than chance makes of them.
-- The sheet's masses and rates are not those of the recordings. Its wheel hop, {{math}}`\\sqrt{{(k_t + k_s)/m_u}}`, would be at
-  8.7 Hz.
-- Added masses are not used: the folder names them "100" and "200" and does not say of what.
-
-## Reproduction
-
-    python docs/studies/half_car_rig.py "LAB TEST FOLDER" --processes 2
-"""
-
-
-def _row(setting: str, outcome: Mapping[str, Any]) -> list[str]:
-    found = outcome["parameters"]
-    cells = [_with_std(*found.get(name, (None, None)), factor) for name, (_, factor) in SHOWN.items()]
-    rate, damping = (found.get(name, (None, None))[0] for name in ("k_x", "c_x"))
-    relaxes = f"{damping / rate:.2f}" if rate and damping else "-"
-    return [setting, outcome["verdict"], ", ".join(outcome["faults"]), *cells, relaxes]
-
-
-def _with_std(value: float | None, std: float | None, factor: float) -> str:
-    return "-" if value is None or std is None else f"{value / factor:.4g} ± {std / factor:.2g}"
 
 
 if __name__ == "__main__":

@@ -79,7 +79,7 @@ def test_with_nothing_to_step_it_is_the_linear_likelihood(
 def test_only_a_known_mass_gives_the_scale(
     campaign: Campaign, decays: tuple[FreeDecay, ...], plain: ModelStructure, optimum: FitResult, loaded: bool
 ) -> None:
-    """That every mass and rate grows alike changes no motion: without a load the information of it is zero, by drop and by window."""
+    """That every mass and rate grows alike changes no motion: without a load there is no information of it."""
     larger = plain.with_terms(("friction",))
     start = optimum.parameters | {"F_f": 40.0, "F_r": 40.0, "s_f": 2e5, "s_r": 2e5}
     chosen = [i for i, decay in enumerate(decays) if loaded or decay.load == "empty"]
@@ -87,7 +87,7 @@ def test_only_a_known_mass_gives_the_scale(
         [decays[i] for i in chosen],
         larger.nonlinear_models,
         campaign.sensors,
-        larger.known | {"m_s": KnownValue(1380.0)},
+        dict(larger.known) | {"m_s": KnownValue(1380.0)},
         start=start,
         states=optimum.states[chosen],
         near=True,

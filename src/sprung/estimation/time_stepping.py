@@ -137,10 +137,10 @@ class TimeSteppingObjective:
         return bool(read.any()) or any(model.linear.has_scale for model in self.models_by_kind)
 
     def visible_changes(self, values: Real) -> Real:
-        """Return what of a change of the parameters any record shows, as a projection, SI, shape (parameter, parameter).
+        """Return what of a change of the parameters records show, as a projection, SI, shape (parameter, parameter).
 
-        Where nothing gives the scale, no motion changes with it. Steps, and what is assumed of the memories of friction, keep this
-        symmetry only in part: they would weigh a vehicle that nobody has weighed.
+        Where nothing gives the scale, no motion changes with it. Steps, and what is assumed of the memories of friction,
+        keep this symmetry only in part: they would weigh a vehicle that nobody has weighed.
         """
         everything = np.eye(len(values))
         if self.shows_scale:

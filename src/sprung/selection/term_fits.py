@@ -14,7 +14,7 @@ from sprung.estimation import NEAR, FitResult, fit_linear
 from sprung.progress import Step
 from sprung.selection.error_budget import MISFIT_LEFT, MISFIT_LEFT_AT_FIRST
 from sprung.selection.linear_terms import ENGINE
-from sprung.selection.ordinary_vehicle import fit_from_ordinary_vehicle, is_ordinary, ordinary_vehicle
+from sprung.selection.ordinary_vehicle import ITERATIONS, fit_from_ordinary_vehicle, is_ordinary, ordinary_vehicle
 from sprung.selection.scoring import WORTH_A_FIT, with_best_start
 from sprung.selection.search import ModelSearch
 from sprung.selection.starts import fit_structure, has_positive_masses, start_values
@@ -78,11 +78,18 @@ def fit_forced_terms(search: ModelSearch, requested: ModelStructure) -> ModelSea
 
 
 def _begin_with_held_wheels(search: ModelSearch, larger: ModelStructure) -> ModelSearch:
-    """Fit a larger structure to the beginnings of the decays with the wheels' masses held at their stated or usual values."""
+    """Fit a larger structure from an ordinary vehicle, with the wheels' masses held at their stated or usual values.
+
+    The linear vehicle is fitted first, and then the larger structure to the beginnings of the decays.
+    """
     values, _ = ordinary_vehicle(larger)
     wheels = {name: KnownValue(values[name]) for name in larger.names if name.startswith("m_u")}
     linear, held = (replace(one, known={**one.known, **wheels}) for one in (search.structure, larger))
-    return search.refit(linear).refit(held, _FIRST_ITERATIONS, beginning_only=True)
+    fit = fit_linear(
+        search.decays, linear.linear_models, linear.sensors, linear.known, start=values, enough=NEAR, most=ITERATIONS
+    )
+    begin = replace(search, structure=linear, fit=fit.after(search.fit))
+    return begin.refit(held, _FIRST_ITERATIONS, beginning_only=True)
 
 
 def fit_term(search: ModelSearch, term: str) -> ModelSearch:

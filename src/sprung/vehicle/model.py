@@ -304,7 +304,7 @@ class LinearModel:
 
     @cached_property
     def has_scale(self) -> bool:
-        """Whether something in it does not grow with every mass and rate of the vehicle alike, such as the known mass of a load."""
+        """Whether something in it does not grow with every mass and rate of the vehicle alike, as the known mass of a load."""
         grows = np.array([False, *(parameter_of(name).scales for name in self.names)])
         return bool(np.any(grows[self.products].sum(axis=1) != 1))
 
