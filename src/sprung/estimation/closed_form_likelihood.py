@@ -66,7 +66,7 @@ class ClosedFormAt:
         return replace(self, weights=weights)
 
     def moved(self, values: Real, _damping: float = 0.0, /) -> ObjectiveAt:
-        """Return the likelihood at other parameter values, SI, shape (parameter,)."""
+        """Return the likelihood at other parameter values, SI, shape (parameter,); no step of states has any `_damping`."""
         return self.objective.at(values, self.weights)
 
     def with_optimal_states(self) -> ClosedFormAt:

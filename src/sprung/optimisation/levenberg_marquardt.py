@@ -93,7 +93,7 @@ class Maximisable(Protocol[Point]):
     def trial(self, point: Point, step: Array, damping: float, /) -> tuple[Point, float]:
         """Return the point a step (shape (coordinate,)) away, and the gain in twice the log-likelihood: -inf if it has none.
 
-        The steps of eliminated unknowns are damped as well.
+        Steps of eliminated unknowns have the same damping.
         """
 
 
