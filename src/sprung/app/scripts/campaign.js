@@ -19,6 +19,7 @@ function listOf(texts) {
 }
 
 function check() {
+  asked += 1; // an answer that is under way is about something else
   clearTimeout(timer);
   timer = setTimeout(ask, QUIET);
 }
