@@ -52,6 +52,8 @@ function show(found) {
     gap.hidden = !own?.missing || problems.length > 0;
     if (own?.missing) gap.textContent = `To be filled in: ${own.missing}`;
     field.classList.toggle("missing", Boolean(own?.missing));
+    const leaveOut = field.querySelector("[data-leave-out]");
+    if (leaveOut) leaveOut.hidden = !own?.missing;
     field.querySelectorAll("[aria-invalid]").forEach((input) => input.setAttribute("aria-invalid", String(problems.length > 0)));
     if (problems.length || own?.missing) field.closest("details.more")?.setAttribute("open", "");
   }
