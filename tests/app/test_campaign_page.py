@@ -150,6 +150,38 @@ def test_the_text_is_checked_while_it_is_typed(user: Tabs, file: Path) -> None:
     assert file.read_text() == text  # nothing was saved
 
 
+def test_what_was_entered_remains_where_saving_fails(user: Tabs, file: Path) -> None:
+    page = user.open(PAGE)
+    before = file.read_text()
+    page.route(re.compile(r"/campaign\?"), lambda route: route.abort())
+    page.fill("[id='vehicle.wheelbase.value']", "2,58")
+    page.keyboard.press("Control+s")
+    page.locator("#failure", has_text="sprung does not answer").wait_for()
+    assert page.evaluate("document.activeElement.id") == "vehicle.wheelbase.value"
+    assert file.read_text() == before
+    page.unroute_all()
+    page.keyboard.press("Control+s")
+    page.get_by_text("Saved.").wait_for()
+    assert page.locator("#failure").is_hidden()
+    assert page.input_value("[id='vehicle.wheelbase.value']") == "2,58"
+    assert tomllib.loads(file.read_text())["vehicle"]["wheelbase"] == 2.58
+    page.locator("#changes").wait_for(state="hidden")
+    page.fill("[id='vehicle.wheelbase.value']", "2,59")
+    assert page.locator("#saved").is_hidden()
+    assert saved(page, file)["vehicle"]["wheelbase"] == 2.59
+    user.complaints.remove("error: Failed to load resource: net::ERR_FAILED")
+
+
+def test_two_sensors_of_one_name_are_moved_each(user: Tabs, file: Path) -> None:
+    file.write_text(file.read_text().replace('"body_fr"', '"body_fl"'))
+    page = user.open(PAGE)
+    first, second = position(page, 0), position(page, 1)
+    mark(page, "body_fl").nth(1).focus()
+    page.keyboard.press("ArrowRight")
+    assert position(page, 0) == first
+    assert position(page, 1) == pytest.approx([second[0] + 0.01, *second[1:]], abs=1e-9)
+
+
 @pytest.mark.slow
 def test_what_is_added_has_the_focus(user: Tabs) -> None:
     page = user.open(PAGE)

@@ -87,7 +87,7 @@ def test_a_results_folder_that_cannot_be_used_is_said_at_its_field(folder: Path)
     """Neither outside, nor among other files, nor where another identification writes."""
     workspace, jobs = Workspace(folder), Jobs()
     (folder / "van" / "campaign.toml").write_text("[vehicle]\n")
-    for name in ("../x", "/abs/x", "van/.x", "van/deep", "van/a.csv"):
+    for name in ("../x", "/abs/x", "van/.x", "van/deep", "van/a.csv", "van/check"):
         with pytest.raises(InputError, match=r"^Results folder: found"):
             check_output(workspace, jobs, "van/campaign.toml", name)
     for name in ("van/results", "van/new", "van/results zwei/ü"):

@@ -105,9 +105,12 @@ def check_output(workspace: Workspace, jobs: Jobs, campaign: str, output: str) -
         expected = f"the name of a folder in {workspace.folder.name}"
         raise InputError([Problem(where, f"'{output}'", expected, do)]) from error
     own = {entry.name.rpartition("/")[2] for entry in (workspace.listing(output, 0).entries if path.is_dir() else ())}
-    if path.is_file() or (own and "results.json" not in own):
+    others = {
+        inside(parent_of(campaign), folder) for folder in ("check", "validation")
+    }  # of the commands of these names
+    if path.is_file() or output in others or (own and "results.json" not in own):
         expected = "a new folder, or one with a result"
-        raise InputError([Problem(where, f"'{output}', which has other files", expected, do)])
+        raise InputError([Problem(where, f"'{output}', a place of other files", expected, do)])
     begin = arguments(workspace, "identify", campaign)
     for job in jobs.all():
         is_other = job.arguments[0] == "identify" and job.arguments[: len(begin)] != begin

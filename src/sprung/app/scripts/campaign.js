@@ -19,6 +19,7 @@ function listOf(texts) {
 }
 
 function check() {
+  asked += 1; // an answer that is under way is about something else
   clearTimeout(timer);
   timer = setTimeout(ask, QUIET);
 }
@@ -51,6 +52,8 @@ function show(found) {
     gap.hidden = !own?.missing || problems.length > 0;
     if (own?.missing) gap.textContent = `To be filled in: ${own.missing}`;
     field.classList.toggle("missing", Boolean(own?.missing));
+    const leaveOut = field.querySelector("[data-leave-out]");
+    if (leaveOut) leaveOut.hidden = !own?.missing;
     field.querySelectorAll("[aria-invalid]").forEach((input) => input.setAttribute("aria-invalid", String(problems.length > 0)));
     if (problems.length || own?.missing) field.closest("details.more")?.setAttribute("open", "");
   }

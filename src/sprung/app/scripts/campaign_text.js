@@ -4,7 +4,7 @@ import { setUpSaving } from "./saving.js";
 const form = document.querySelector("#campaign");
 const QUIET = 400; // ms without a key, after which what was typed is checked
 let timer = 0, asked = 0;
-const saving = setUpSaving(form, () => { clearTimeout(timer); timer = setTimeout(ask, QUIET); });
+const saving = setUpSaving(form, () => { asked += 1; clearTimeout(timer); timer = setTimeout(ask, QUIET); });
 
 // What was typed before this script was loaded.
 const text = form.querySelector("#text");

@@ -7,7 +7,14 @@ export function setUpSketch(form, changed) {
   const unplaced = document.querySelector("#unplaced");
   let held = null;
 
-  const sensorOf = (channel) => [...form.querySelectorAll("fieldset.sensor")].find((group) => input(group, "channel").value === channel);
+  // Two sensors may have one name until that is corrected: the marks of a drawing stand in the order of the sensors that it shows.
+  const marksOf = (svg, channel) => [...svg.querySelectorAll(`[data-channel="${CSS.escape(channel)}"]`)];
+  const isDrawn = (group) => !isOnBody(group) || numbers(group).every((field) => field.value.trim() !== "");
+  function sensorOf(mark) {
+    const channel = mark.dataset.channel;
+    const groups = [...form.querySelectorAll("fieldset.sensor")].filter((group) => input(group, "channel").value === channel && isDrawn(group));
+    return groups[marksOf(mark.closest("svg"), channel).indexOf(mark)] ?? groups[0];
+  }
   const input = (group, key) => document.getElementById(`${group.id}.${key}`);
   const numbers = (group) => [0, 1, 2].map((i) => input(group, `position.${i}`));
   const read = (field) => Number(field.value.replace(",", ".").replace("\u2212", "-"));
@@ -23,7 +30,7 @@ export function setUpSketch(form, changed) {
 
   function setUpMarks() {
     for (const mark of place.querySelectorAll("[data-channel]")) {
-      const group = sensorOf(mark.dataset.channel);
+      const group = sensorOf(mark);
       if (!group) continue;
       mark.setAttribute("tabindex", "0");
       mark.setAttribute("role", "button");
@@ -65,7 +72,7 @@ export function setUpSketch(form, changed) {
     const fields = numbers(group);
     write(fields[0], to[0]);
     write(fields[frame.up], to[1]);
-    for (const mark of place.querySelectorAll(`[data-channel="${CSS.escape(input(group, "channel").value)}"]`)) {
+    for (const mark of marksOf(place, input(group, "channel").value).filter((mark) => sensorOf(mark) === group)) {
       const own = frameOf(mark.closest("svg"));
       mark.setAttribute("cx", own.x + own.scale * read(fields[0]));
       mark.setAttribute("cy", own.y - own.scale * read(fields[own.up]));
@@ -75,10 +82,10 @@ export function setUpSketch(form, changed) {
 
   // A sensor on a wheel goes to the wheel that is nearest.
   function wheelNear(svg, to) {
-    const stations = [...input(sensorOf(held.mark.dataset.channel), "on").options].map((option) => option.value);
+    const stations = [...input(held.group, "on").options].map((option) => option.value);
     const wheelbase = read(document.getElementById("vehicle.wheelbase.value")) || 2.7;
     const front = to[0] > -wheelbase / 2, left = frameOf(svg).up === 1 ? to[1] > 0 : null;
-    const wanted = stations.filter((station) => !station.startsWith("pad") && station !== "body").find((station) => matches(station, front, left, input(sensorOf(held.mark.dataset.channel), "on").value));
+    const wanted = stations.filter((station) => !station.startsWith("pad") && station !== "body").find((station) => matches(station, front, left, input(held.group, "on").value));
     return wanted;
   }
   const matches = (station, front, left, now) => {
@@ -94,7 +101,7 @@ export function setUpSketch(form, changed) {
 
   place.addEventListener("pointerdown", (event) => {
     const mark = event.target.closest?.("[data-channel]");
-    const group = mark && sensorOf(mark.dataset.channel);
+    const group = mark && sensorOf(mark);
     if (!group || event.button) return;
     held = { mark, group, svg: mark.closest("svg"), moved: false };
     place.setPointerCapture(event.pointerId);
@@ -128,7 +135,7 @@ export function setUpSketch(form, changed) {
   place.addEventListener("keydown", (event) => {
     const mark = event.target.closest?.("[data-channel]");
     const step = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
-    const group = mark && sensorOf(mark.dataset.channel);
+    const group = mark && sensorOf(mark);
     if (!step || !group) return;
     event.preventDefault();
     focusAfter = mark.dataset.channel;
