@@ -89,7 +89,7 @@ def test_only_a_known_mass_gives_the_scale(
         campaign.sensors,
         dict(larger.known) | {"m_s": KnownValue(1380.0)},
         start=start,
-        states=optimum.states[chosen],
+        states=np.hstack([optimum.states[chosen], np.full((len(chosen), 4), 0.3)]),  # memories of friction
         near=True,
         most=0,
     )
@@ -99,11 +99,16 @@ def test_only_a_known_mass_gives_the_scale(
     assert windows is not None
     of_records = [along @ own @ along for own in (at.information, windows[1].sum(axis=0))]
     slopes = [own.sum(axis=0) @ along for own in (at.by_drop[0], windows[0])]
+    objective = found.problem.objective
+    assert isinstance(objective, TimeSteppingObjective)
+    visible = objective.visible_changes(found.values) @ along
     if loaded:
         assert min(of_records) > 1e3  # 140 kg of ballast are known
+        np.testing.assert_array_equal(visible, along)
     else:
         np.testing.assert_allclose(of_records, 0.0, atol=1e-6)
         np.testing.assert_allclose(slopes, 0.0, atol=1e-3)
+        np.testing.assert_allclose(visible, 0.0, atol=1e-6)
 
 
 def test_scores_are_those_of_the_linear_fit(

@@ -59,16 +59,17 @@ class NormalEquations(NamedTuple):
     directions: Array
     eliminated: Real = NONE_ELIMINATED
 
-    def step(self, damping: float = 0.0, longest: float = np.inf) -> tuple[Array, float]:
+    def step(self, damping: float = 0.0, longest: float = np.inf, of_eliminated: float = 0.0) -> tuple[Array, float]:
         """Return a damped step in the coordinates, the Newton step without damping, and its expected gain.
 
         The gain is that of twice the log-likelihood. A coordinate that would go further than the `longest` is held back as by
-        information of its own, so that one of which hardly anything is known does not shorten the step of all others.
+        information of its own, so that one of which hardly anything is known does not shorten the step of all others. Steps of
+        eliminated unknowns have a damping of their own.
         """
         eigenvalues, squares = self.eliminated
-        of_eliminated = float(np.sum(squares / (eigenvalues + damping)))
+        their_gain = float(np.sum(squares / (eigenvalues + of_eliminated)))
         if not self.gradient.size:
-            return np.zeros(len(self.directions)), of_eliminated
+            return np.zeros(len(self.directions)), their_gain
         matrix = self.information + damping * self.scaling
         along = np.linalg.solve(matrix, self.gradient)
         for _ in range(_HELD_BACK):
@@ -80,7 +81,7 @@ class NormalEquations(NamedTuple):
             v = np.einsum("ij,ji->i", own, np.linalg.solve(matrix, own.T)).real
             matrix = matrix + own.T @ ((far[far > longest] / longest - 1) / v * own.T).T
             along = np.linalg.solve(matrix, self.gradient)
-        gain = float((along.conj() @ self.gradient).real) + of_eliminated
+        gain = float((along.conj() @ self.gradient).real) + their_gain
         return _limited(self.directions @ along, longest), gain
 
 
@@ -93,7 +94,7 @@ class Maximisable(Protocol[Point]):
     def trial(self, point: Point, step: Array, damping: float, /) -> tuple[Point, float]:
         """Return the point a step (shape (coordinate,)) away, and the gain in twice the log-likelihood: -inf if it has none.
 
-        Steps of eliminated unknowns have the same damping.
+        The damping is that of the steps of eliminated unknowns, which are part of it.
         """
 
 
@@ -159,7 +160,9 @@ def maximise(
         found = _gaining_step(problem, point, equations, damping, longest_step, tolerance)
         if found is None:
             # Not even the shortest step gains: without noise rounding leaves no more.
-            return Maximum(point, steps, converged=equations.step(_MOST_DAMPING)[1] < _STALLED)
+            return Maximum(
+                point, steps, converged=equations.step(_MOST_DAMPING, of_eliminated=_MOST_DAMPING)[1] < _STALLED
+            )
         point, damping, gain = found
         # What the steps to come will gain, if they go on shrinking as the last two did.
         ratio = min(gain / before, _SLOWEST) if before < np.inf else _SLOWEST
@@ -187,16 +190,18 @@ def _gaining_step(
     """
     first = True
     while damping < _MOST_DAMPING:
-        step, expected = equations.step(damping, longest)
+        # They follow the others, and are nearly linear: their whole step is shortened only where it loses.
+        of_eliminated = 0.0 if first else damping
+        step, expected = equations.step(damping, longest, of_eliminated)
         if not first and expected < tolerance:
             return None
-        tried, gain = problem.trial(point, step, damping)
+        tried, gain = problem.trial(point, step, of_eliminated)
         if gain >= 0:
             ratio = gain / max(expected, np.finfo(float).tiny)
             return tried, _next_damping(damping, ratio), max(expected, gain)
         if first and np.isfinite(gain):
             back, _ = problem.normal_equations(tried).step(damping, longest)
-            second_point, further = problem.trial(tried, back, damping)
+            second_point, further = problem.trial(tried, back, of_eliminated)
             if gain + further > 0:
                 return second_point, damping, max(expected, gain + further)
             first = False
