@@ -135,9 +135,11 @@ def decide_verdict(
 def _unexplained(size: float, ratio: float, channel: str) -> Iterator[str]:
     if size > EXPLAINED:
         ratio_text = "" if np.isnan(ratio) else f", {ratio:.1f} times the noise at rest"
+        # How much larger than the signal an error is that has no bounds says nothing.
+        size_text = f"{100 * size:.1f} % of the signal{ratio_text}" if size < 1 else "larger than the signal"
         yield (
-            f"the model does not explain the records: in {channel} its error is {100 * size:.1f} % of the "
-            f"signal{ratio_text}; dry friction, stops, asymmetric dampers or a wrong campaign file do this"
+            f"the model does not explain the records: in {channel} its error is {size_text}; "
+            "dry friction, stops, asymmetric dampers or a wrong campaign file do this"
         )
 
 
