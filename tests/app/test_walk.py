@@ -110,6 +110,7 @@ def test_ten_recordings_become_an_accepted_report(user: Tabs, server: Served, re
     assert estimate.value == pytest.approx(HATCHBACK.k_sf, rel=0.05)  # 5 standard uncertainties of 0.7 % to 1 %
 
 
+@pytest.mark.slow  # cancels what the walk has identified
 def test_an_identification_is_cancelled_and_nothing_is_changed(user: Tabs, server: Served) -> None:
     before = {path: path.read_bytes() for path in (server.folder / "results").iterdir()}
     page = user.open("/identify?campaign=campaign.toml")

@@ -32,7 +32,11 @@ TYPICAL = {
     "1/m": (-0.2, 0.2),
 }
 
-UNEVEN = {name: 0.5 * TYPICAL[PARAMETERS[name].unit][0] for name in PARAMETERS if name[:2] == "d_"}
+UNEVEN = {
+    name: 0.5 * TYPICAL[PARAMETERS[name].unit][0]
+    for name in PARAMETERS
+    if name[:2] == "d_" and PARAMETERS[name].unit in TYPICAL
+}
 NARROW = {name: (-most, most) for name, most in UNEVEN.items()}
 NARROW |= {"y_s": (-0.2, 0.2), "m_xf": (-10.0, 40.0), "m_xr": (-10.0, 40.0)}
 NARROW |= {"m_e": (0.5, 5.0), "x_e": (-2.5, 0.5)}  # no more than the lightest of these bodies is left with

@@ -64,7 +64,7 @@ class NormalEquations(NamedTuple):
 
         The gain is that of twice the log-likelihood. A coordinate that would go further than the `longest` is held back as by
         information of its own, so that one of which hardly anything is known does not shorten the step of all others. Steps of
-        eliminated unknowns have a damping of their own.
+        eliminated unknowns have a damping of their own, `of_eliminated`.
         """
         eigenvalues, squares = self.eliminated
         their_gain = float(np.sum(squares / (eigenvalues + of_eliminated)))
