@@ -186,14 +186,11 @@ class ClosedFormAt:
         load, step = self._load(drop)
         poles, shapes = self.modes.poles[load], self.modes.right[load]
         amplitudes = self.modes.left[load] @ self.states[drop]
-        batch, group = self.group_of(drop)
-        waves = self.sums[batch].waves[group]
         # A pole and its conjugate add the same real part twice.
         upper = poles.imag >= 0
         coefficients = shapes[:, upper] * (amplitudes[upper] * np.where(poles[upper].imag > 0, 2.0, 1.0))
         motion = np.empty((len(shapes), before + after))
-        within = waves[:after] if after <= len(waves) else exponentials(poles[upper] * step, after)
-        motion[:, before:] = real_product(coefficients, within)
+        motion[:, before:] = real_product(coefficients, exponentials(poles[upper] * step, after))
         powers = turns(np.outer(np.arange(-before, 0) * step, poles[upper]))
         motion[:, :before] = real_product(coefficients, powers)
         return motion

@@ -92,9 +92,11 @@ class ExponentialSums:
         gram = exponential_gram(exponent, batch.samples, batch.group)
         return cls(batch, values, poles, shapes, prior, gram, batch.correlate(exponent))
 
-    @cached_property
     def waves(self) -> list[Complex]:
-        """e^{λk} of one pole of each pair over the longest record of each group, shape (time, upper mode)."""
+        """Return e^{λk} of one pole of each pair over the longest record of each group, shape (time, upper mode).
+
+        They are as large as the records of a drop, and not kept.
+        """
         batch = self.batch
         # Where every record is a group, as its clocks differ, many have the same poles and steps.
         kinds = list(zip(batch.load.tolist(), batch.step.tolist(), strict=True))
@@ -359,7 +361,7 @@ class ProjectedResponse:
     def fitted(self) -> Iterator[Real]:
         """Modelled records, their means subtracted; each of shape (channel, time)."""
         batch = self.sums.batch
-        for group, (poles, waves) in enumerate(zip(self.sums.poles, self.sums.waves, strict=True)):
+        for group, (poles, waves) in enumerate(zip(self.sums.poles, self.sums.waves(), strict=True)):
             members = batch.members(group)
             # A pole and its conjugate add the same real part twice.
             upper = poles.imag >= 0
