@@ -69,6 +69,34 @@ def test_an_engine_is_fitted_beside_friction() -> None:
         assert abs(found.value - rubbing.parameters[name]) < 4 * found.std
 
 
+@pytest.mark.slow
+def test_bump_stops_are_selected_though_the_linear_fit_went_astray() -> None:
+    """Without them a vehicle is found of which no fit with them comes back: the wheels keep their masses at first."""
+    stopped = TABLE_1_CAR.with_values(k_bf=30e3, k_br=25e3, x_bf=0.02, x_br=0.025, name="car on its stops")
+    campaign = sprung.simulate(stopped, loads=[BALLAST], noise=0.02, seed=1, rate=250, duration=2.0)
+    result = sprung.identify(campaign)
+    assert result.fit.model == ("bump-stop",)
+    assert result.verdict.state == "accept"
+    for name, value in stopped.parameters.items():
+        found = result.parameters[name]
+        assert found.value is not None
+        assert found.std is not None
+        assert abs(found.value - value) < 4 * found.std
+
+
+@pytest.mark.long
+def test_friction_and_rebound_of_a_van_are_selected() -> None:
+    """From an ordinary vehicle, whose initial states have far to go: their steps must not be shortened without need."""
+    van = TABLE_1_CAR.with_values(
+        m_s=1950.0, I_yy=4600.0, I_xx=950.0, m_uf=55.0, m_ur=65.0, k_sf=38e3, k_sr=48e3, k_tf=260e3, k_tr=300e3, c_sf=2800.0,
+        c_sr=3100.0, a=1.45, b=1.8, F_f=141.0, F_r=141.0, s_f=283e3, s_r=283e3, r_f=2.0, r_r=2.0, name="van",
+    )  # fmt: skip
+    known = {"total_mass": van.total_mass}
+    result = sprung.identify(sprung.simulate(van, noise=0.02, seed=2, known=known))
+    assert result.fit.model == ("friction", "rebound")
+    assert result.verdict.state == "accept"
+
+
 def test_a_body_that_could_carry_no_usual_engine_is_identified() -> None:
     # Its mass sits in its middle: a tenth of it above either axle would have more pitch inertia than all of it.
     compact = TABLE_1_CAR.with_values(I_yy=200.0, name="compact")

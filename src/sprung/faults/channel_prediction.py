@@ -21,6 +21,9 @@ from sprung.vehicle import Sensor, coordinates, sensor_rows, wheelbase_of
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
+_DEAD = -np.log(np.finfo(float).eps)
+"""Exponent by which a motion has died away to rounding."""
+
 _LATEST = 0.05
 """s by which a channel may be late."""
 
@@ -130,7 +133,9 @@ class ChannelPrediction:
         """Return the motion that a channel with a delay, s, shows, and its rate; shape (coordinate, sample) each."""
         parts = []
         for poles, amplitudes, waves in self._waves:
-            turned = amplitudes * np.exp(-poles * delay)
+            # What has died away by rounding within the delay shows nothing of it any more.
+            lasts = -poles.real * delay < _DEAD
+            turned = amplitudes * np.exp(np.where(lasts, -poles * delay, -np.inf))
             parts.append(_centred((np.concatenate([turned, turned * poles]) @ waves).real))
         motion, rates = np.split(np.hstack(parts), 2)
         return motion, rates

@@ -154,7 +154,17 @@ def begin_nonlinear_fit(search: ModelSearch, larger: ModelStructure) -> FitResul
 
 
 def fit_nonlinear_term(search: ModelSearch, larger: ModelStructure, first: FitResult) -> ModelSearch | None:
-    """Fit a nonlinear model whose fit has begun; None where it leaves too much of the misfit."""
+    """Fit a nonlinear model whose fit has begun; None where it leaves too much of the misfit.
+
+    Where it does, the linear fit may have gone too far astray to begin from: the wheels then keep their masses at first.
+    """
+    if (
+        search.leaves_misfit(first, MISFIT_LEFT_AT_FIRST)
+        and search.is_misfit_large
+        and not search.structure.is_nonlinear
+    ):
+        held = begin_nonlinear_fit(_begin_with_held_wheels(search, larger), larger)
+        first = max(first, held, key=lambda fit: fit.loglikelihood)
     if search.leaves_misfit(first, MISFIT_LEFT_AT_FIRST):
         return None
     if not first.converged:
