@@ -76,7 +76,8 @@ class ModalSolution:
         The larger of |λ₁ - λ₂|/|λ₁| and the sine of the angle between the displacements, their coordinates made comparable.
         """
         frequency = np.maximum(np.abs(self.poles), np.finfo(float).tiny)
-        apart = np.abs(self.poles[..., :, None] - self.poles[..., None, :]) / frequency[..., :, None]
+        with np.errstate(over="ignore"):  # from a pole at zero all others are infinitely far
+            apart = np.abs(self.poles[..., :, None] - self.poles[..., None, :]) / frequency[..., :, None]
         shapes = self.displacements / _sizes(self.displacements, axis=-2)[..., None, :]
         shapes = shapes / np.maximum(_sizes(shapes, axis=-1), np.finfo(float).tiny)[..., :, None]
         shapes = shapes / _sizes(shapes, axis=-2)[..., None, :]

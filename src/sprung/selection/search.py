@@ -336,7 +336,7 @@ class ModelSearch:
         lengths = [residual.shape[1] for residual in fit.residuals]
         own = [residual[:, :length] for residual, length in zip(self.fit.residuals, lengths, strict=True)]
         before, after = (
-            np.maximum(np.nanmean(np.concatenate(residuals, axis=1) ** 2, axis=1) - self._sensor_noise, 0.0)
+            np.maximum(_mean_squares(np.concatenate(residuals, axis=1)) - self._sensor_noise, 0.0)
             for residuals in (own, fit.residuals)
         )
         much = before > self._sensor_noise
@@ -356,3 +356,11 @@ class ModelSearch:
         return (f"model terms {decided}" if decided else "no further model term is supported by the data") + (
             f"; not supported: {refused}" if refused else ""
         )
+
+
+def _mean_squares(residuals: Real) -> Real:
+    """Return the mean square of each channel over the samples that are numbers, shape (channel,); NaN where none is."""
+    is_number = ~np.isnan(residuals)
+    sums, counts = np.sum(np.where(is_number, residuals, 0.0) ** 2, axis=1), is_number.sum(axis=1)
+    means: Real = np.divide(sums, counts, out=np.full(len(sums), np.nan), where=counts > 0)
+    return means
