@@ -103,8 +103,10 @@ def sensors_of_the_bus() -> tuple[sprung.Sensor, ...]:
 
 
 def fit_of(bus: sprung.Vehicle) -> FitStatistics:
-    """A fit that found the truth."""
-    names, values, nothing = tuple(bus.parameters), np.array(list(bus.parameters.values())), np.zeros(0)
+    """A fit that found the truth, also of the sensors, whose unknowns come behind the vehicle's."""
+    sensors = [name for sensor in sensors_of_the_bus() for name in sensor.uncertainties]
+    names, nothing = (*bus.parameters, *sensors), np.zeros(0)
+    values = np.array([*bus.parameters.values(), *np.zeros(len(sensors))])
     square = np.zeros((len(names), len(names)))
     known: dict[str, float] = {}
     return FitStatistics(

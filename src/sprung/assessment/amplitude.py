@@ -105,7 +105,9 @@ def follow_modes(
         The underdamped modes of the body that the sensors determine, lowest first.
     """
     linear = model.linear if isinstance(model, NonlinearModel) else model
-    matrices = linear.matrices(with_tyre_rates_at_rest(linear, fit.values))
+    estimates = dict(zip(fit.names, fit.values.tolist(), strict=True))
+    values = np.array([estimates[name] for name in linear.names])  # without the unknowns of the sensors
+    matrices = linear.matrices(with_tyre_rates_at_rest(linear, values))
     modes = [mode for mode in compute_modes(matrices, coordinates(linear.names)) if mode.pole.imag != 0]
     rows = body_rows(fit, sensors)
     determined = [motion for motion in motions if np.isfinite(motion.measured).all()]
@@ -131,7 +133,7 @@ def follow_modes(
         if seen.size:
             begin = float(seen.max()) / largest
             for _ in range(_TRIES):
-                decay = _decay(model, fit.values, mode, begin)
+                decay = _decay(model, values, mode, begin)
                 simulated = follow_mode("", decay, 1 / _STEP, noise, modes, which, largest, float(seen.min()))
                 # Friction takes most of a large motion within its first period, before the middle of the first window.
                 if simulated.amplitude.max(initial=0.0) > _REACHED * seen.max():
