@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -99,7 +100,8 @@ def motions_of(bus: sprung.Vehicle) -> list[BodyMotion]:
 
 
 def sensors_of_the_bus() -> tuple[sprung.Sensor, ...]:
-    return sprung.simulate(SCHOOL_BUS, drops=DROPS[:1], noise=0.0).sensors
+    sensors = sprung.simulate(SCHOOL_BUS, drops=DROPS[:1], noise=0.0).sensors
+    return tuple(replace(sensor, gain_std=0.01) for sensor in sensors)
 
 
 def fit_of(bus: sprung.Vehicle) -> FitStatistics:
