@@ -69,6 +69,7 @@ def test_beside_others(benchmark: Any, task: Task) -> None:
         "whole fit from three starts / from one": turns.ratio("three starts", "one start"),
         "sprung.identify / whole fit from its own start": turns.ratio("identify", "one start"),
     }
+    benchmark.extra_info["seconds"] = {name: float(np.median(times)) for name, times in turns.seconds.items()}
     benchmark.extra_info["standard_errors"] = distances = {
         "SciPy, as timed": apart(found["scipy"], ours.values),
         "lmfit, as timed": apart(found["lmfit"], ours.values),
