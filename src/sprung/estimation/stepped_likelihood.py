@@ -113,7 +113,7 @@ class TimeSteppingAt:
         """Information and gradient of each drop without its initial state, and how that follows the parameters."""
         return eliminate(*self._normal_equations, len(self.values))
 
-    @property
+    @cached_property
     def by_drop(self) -> tuple[Real, Real]:
         """Gradient and information of each drop; shapes (drop, parameter) and (drop, parameter, parameter)."""
         information, gradient, _ = self._eliminated

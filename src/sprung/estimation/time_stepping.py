@@ -13,6 +13,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.estimation.priors import scaling_direction
 from sprung.estimation.projected_response import initial_state_prior_std
 from sprung.estimation.records import channel_rate_ratios
 from sprung.estimation.stepped_likelihood import TimeSteppingAt
@@ -145,8 +146,8 @@ class TimeSteppingObjective:
         everything = np.eye(len(values))
         if self.shows_scale:
             return everything
-        grows = np.array([parameter_of(name).scales for name in self.sensors.names]) & (values != 0)
-        along = np.where(grows, values, 0.0)
+        along = scaling_direction(self.sensors.names, values, np.ones(len(values)))
+        grows = along != 0
         share = np.divide(1.0, values * np.sum(grows), out=np.zeros(len(values)), where=grows)
         return everything - np.outer(along, share)
 
