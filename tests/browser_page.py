@@ -60,7 +60,12 @@ class Tabs:
     def _note(self, message: Any) -> None:
         # A test that clicks before the page has set its focus is a user who is quick, not a fault of the page.
         if not message.text.startswith("Autofocus processing was blocked"):
-            self.complaints.append(f"{message.type}: {message.text}")
+            self.complaints.append(f"{message.type}: {message.text} ({message.location['url']})")
+
+    def forgive(self, complaint: str) -> None:
+        """Take out the one complaint that was to be expected; it must have come."""
+        (expected,) = (text for text in self.complaints if complaint in text)
+        self.complaints.remove(expected)
 
     def close(self) -> None:
         """Close the tabs; they must not have complained."""

@@ -62,9 +62,9 @@ def test_ten_recordings_become_an_accepted_report(user: Tabs, server: Served, re
         assert page.input_value(f"[id='sensor.{number}.channel']") == channel
         for axis, value in enumerate(place):
             page.fill(f"[id='sensor.{number}.position.{axis}']", f"{value:.2f}".replace(".", ","))
-    page.get_by_role("button", name="Add an item").click()
-    page.get_by_role("button", name="Add an item").click()
     for number, (mass, place) in enumerate(ITEMS):
+        page.get_by_role("button", name="Add an item").click()
+        page.locator(f"[id='load.0.items.{number}.mass.value']").wait_for()
         page.fill(f"[id='load.0.items.{number}.mass.value']", str(mass))
         for axis, value in enumerate(place):
             page.fill(f"[id='load.0.items.{number}.position.{axis}']", str(value))

@@ -11,9 +11,11 @@ export function setUpSaving(form, check) {
     busy = true;
     const button = event.submitter, body = new URLSearchParams(new FormData(form));
     if (button?.name) body.set(button.name, button.value);
+    form.inert = !button?.value.startsWith("save"); // its answer is another page: what is typed meanwhile would be half of a value there
     const answer = await fetch(form.getAttribute("action"), { method: "POST", body, headers: { Accept: "application/json" } }).catch(() => null);
     const reason = answer === null ? `sprung does not answer. Start it again in the same folder with --port ${location.port}, and open the address that it prints in another tab.` : answer.ok ? "" : (await answer.text()).trim();
     busy = false;
+    form.inert = false;
     failure.hidden = !reason;
     failure.textContent = reason && `Nothing was saved: ${reason} What is entered here remains.`;
     if (reason) return;
