@@ -10,7 +10,8 @@ import pytest
 from scipy.signal import butter, lfilter, lfilter_zi
 
 import sprung
-from sprung.faults.low_pass import LowPass, delay_times_corner, inverse_kernel, recorded_energy, undo_low_pass
+from sprung.estimation import LowPass
+from sprung.faults.low_pass import inverse_kernel, recorded_energy, undo_low_pass
 from sprung.preprocess import detect_release
 from sprung.uncertainty import KnownValue
 from sprung.units import STANDARD_GRAVITY
@@ -100,7 +101,7 @@ def test_the_response_is_butterworths(order: int) -> None:
     assert gain == pytest.approx(1 / np.sqrt(1 + (frequencies / 40) ** (2 * order)))
     slow = np.angle(low_pass.response(np.array(2j * np.pi * 0.01)))
     assert -slow / (2 * np.pi * 0.01) == pytest.approx(low_pass.delay, rel=1e-6)
-    assert delay_times_corner(1) == pytest.approx(1 / (2 * np.pi))
+    assert LowPass(1.0, 1).delay == pytest.approx(1 / (2 * np.pi))
 
 
 def test_noise_has_its_recorded_energy() -> None:

@@ -93,7 +93,12 @@ def select_nonlinear_terms(run: Analysis, progress: Progress) -> Analysis:
         needed, _ = leave_out_unneeded(last, run.model)
         # Where a wheel last touched, a model with more than the vehicle has did not know.
         search = last if needed is last else from_contact(search.refit_as(needed))
-    return _with_search(run, run.model, search, "select_nonlinear_terms")
+    run = _with_search(run, run.model, search, "select_nonlinear_terms")
+    low_pass = search.structure.low_pass
+    if low_pass is None:
+        return run
+    remark = f"recorded behind a low-pass of the loggers at {low_pass.corner:.0f} Hz, as the recordings show"
+    return replace(run, remarks=(*run.remarks, remark)).noted("select_nonlinear_terms", remark)
 
 
 def has_flexible_body(run: Analysis) -> bool:

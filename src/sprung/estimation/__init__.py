@@ -19,6 +19,7 @@ from sprung.estimation.estimates import (
 from sprung.estimation.fit_result import FitResult, expected_ends
 from sprung.estimation.linear_fit import NEAR, STARTS, escape_local_optimum, fit_linear, weigh_statements
 from sprung.estimation.linear_scores import score_linear_term, score_linear_terms
+from sprung.estimation.low_pass import HIGHEST_CORNER, LowPass, SampledLowPass, unexplained_squares
 from sprung.estimation.modes import UNNAMED, ModeEstimate, mode_estimates
 from sprung.estimation.monomials import parameters_from_matrices, shape_of
 from sprung.estimation.nonlinear_fit import fit_nonlinear, score_stepped_terms
@@ -46,6 +47,7 @@ from sprung.estimation.subspace import canonical_basis
 
 __all__ = [
     "CONVERGED",
+    "HIGHEST_CORNER",
     "MOST_STEPS",
     "NEAR",
     "NO_INFORMATION",
@@ -65,9 +67,11 @@ __all__ = [
     "FitStatistics",
     "ForceCurve",
     "Inflater",
+    "LowPass",
     "ModeEstimate",
     "Prediction",
     "PriorsAndConstraints",
+    "SampledLowPass",
     "Scale",
     "ScoreTest",
     "Unidentifiable",
@@ -109,6 +113,7 @@ __all__ = [
     "statements_of",
     "to_estimates",
     "uncertainty_of",
+    "unexplained_squares",
     "unidentifiable_combinations",
     "usual_engine",
     "usual_rubber",

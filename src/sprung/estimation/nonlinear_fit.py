@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from sprung.estimation.fit_result import FitResult
 from sprung.estimation.linear_fit import NEAR, expected_nuisances
+from sprung.estimation.low_pass import LowPass
 from sprung.estimation.priors import Coordinates, PriorsAndConstraints, UsualValue
 from sprung.estimation.problem import CLOSE_BY, CONVERGED, FAR, EstimationProblem, Iterate
 from sprung.estimation.score_test import score_test
@@ -52,6 +53,7 @@ def fit_nonlinear(
     beginning_only: bool = False,
     most: int = _MOST_STEPS,
     tilting: bool = False,
+    low_pass: LowPass | None = None,
     usual: Mapping[str, UsualValue] = MappingProxyType({}),
     progress: Progress = silent,
 ) -> FitResult:
@@ -82,6 +84,8 @@ def fit_nonlinear(
         Steps at the most, of each fit on the way.
     tilting
         Whether the sensors turn with the body, and measure the less of gravity.
+    low_pass
+        Of the loggers, which all channels passed; None for none.
     usual
         Usual values of parameters, as weak priors.
     progress
@@ -96,14 +100,20 @@ def fit_nonlinear(
     known = statements_of(known, sensors, next(iter(models.values())).names)
     steps, values = 0, expected_nuisances(known) | dict(start)
     stages = (
-        [([_beginning(decay) for decay in decays], max(enough, NEAR if beginning_only else _ON_THE_WAY), _COARSE)]
+        [
+            (
+                [_beginning(decay) for decay in decays],
+                max(enough, NEAR if beginning_only else _ON_THE_WAY),
+                _longest_on_the_way(low_pass),
+            )
+        ]
         if beginning_only or not near
         else []
     )
     if not beginning_only:
         stages.append((list(decays), enough, _FINE))
     for part, tolerance, longest_step in stages:
-        objective = _objective(part, models, sensors, known, states, tilting, longest_step)
+        objective = _objective(part, models, sensors, known, states, tilting, low_pass, longest_step)
         problem = _problem(objective, known, values, usual)
         start_damping = FAR if usual else CLOSE_BY
         if tolerance >= _ON_THE_WAY or beginning_only:
@@ -131,6 +141,7 @@ def score_stepped_terms(
     together: Sequence[Sequence[str]],
     candidates: Mapping[str, Sequence[Sequence[str]]],
     tilting: bool = False,
+    low_pass: LowPass | None = None,
 ) -> dict[str, float]:
     """Return what larger models would gain over one that is fitted already, by score tests from one evaluation.
 
@@ -146,7 +157,7 @@ def score_stepped_terms(
         The directions of the fitted model: parameters that move together in it.
     candidates
         The further directions of each larger one.
-    tilting
+    tilting, low_pass
         As for `fit_nonlinear`.
 
     Returns
@@ -156,7 +167,9 @@ def score_stepped_terms(
     """
     known = statements_of(known, sensors, next(iter(models.values())).names)
     values = expected_nuisances(known) | dict(values)
-    objective = _objective(decays, models, sensors, known, states, tilting, _COARSE)
+    objective = _objective(
+        decays, models, sensors, known, states, tilting, low_pass, _COARSE if low_pass is None else _FINE
+    )
     problem = _problem(objective, known, values)
     names, priors = problem.priors.coordinates.names, problem.priors
     u = priors.project(priors.coordinates.from_parameters(values))
@@ -184,6 +197,11 @@ def score_stepped_terms(
     return gains
 
 
+def _longest_on_the_way(low_pass: LowPass | None) -> float:
+    """Return the longest step on the way, s; what a low-pass makes of a friction that turns round depends on when it does."""
+    return _COARSE if low_pass is None else _FINE
+
+
 def _objective(
     decays: Sequence[FreeDecay],
     models: Mapping[str, NonlinearModel],
@@ -191,10 +209,11 @@ def _objective(
     known: Mapping[str, KnownValue],
     states: Real,
     tilting: bool,
+    low_pass: LowPass | None,
     longest_step: float,
 ) -> TimeSteppingObjective:
     readout = readout_of(sensors, next(iter(models.values())).names, known)
-    return TimeSteppingObjective(tuple(decays), models, readout, states, tilting, longest_step)
+    return TimeSteppingObjective(tuple(decays), models, readout, states, tilting, longest_step, low_pass)
 
 
 def _problem(

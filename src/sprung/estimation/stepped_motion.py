@@ -61,23 +61,20 @@ class SteppedMotion:
         moved = np.swapaxes(starts, 0, 1) + np.einsum("dsiu,du->dsi", by_unknown, change, optimize=True)
         return moved, transitions
 
-    @cached_property
-    def _inputs(self) -> Real:
-        """{X, Ẋ, u, 1} at every sample, shape (time, drop, input)."""
-        every = self.objective.every
+    def _inputs(self, every: int) -> Real:
+        """Return {X, Ẋ, u, 1} of one in so many steps, shape (time, drop, input)."""
         states, forces = self.trajectory.states[::every], self.trajectory.forces[::every]
         return np.concatenate([states, forces, np.ones((*states.shape[:-1], 1))], axis=-1)
 
-    @cached_property
-    def _observed(self) -> Real:
-        """What the sensors read rows of, at every sample, shape (time, drop, column)."""
+    def _observed(self, inputs: Real) -> Real:
+        """Return what the sensors read rows of, shape (time, drop, column)."""
         sensors = self.objective.sensors
         by_kind = [
             sensors.observed_of_states(model.accelerations(self.values)[0], model.linear.massive)
             for model in self.objective.models_by_kind
         ]
         rows = np.stack(by_kind)[self.objective.kind]
-        observed: Real = np.einsum("dij,kdj->kdi", rows, self._inputs, optimize=True)
+        observed: Real = np.einsum("dij,kdj->kdi", rows, inputs, optimize=True)
         return observed
 
     @cached_property
@@ -89,16 +86,23 @@ class SteppedMotion:
     @cached_property
     def _readings(self) -> Real:
         """What the sensors read, shape (drop, channel, time)."""
-        sensors, angles = self.objective.sensors, self._inputs[:, :, self.objective.angles]
-        readings: Real = sensors.at(self.values) @ self._observed.transpose(1, 2, 0)
+        sensors, low_passes = self.objective.sensors, self.objective.low_passes
+        # Between its samples a low-pass sees where friction turns round.
+        of_sample = 1 if self.objective.low_pass is None else self.objective.every
+        inputs = self._inputs(self.objective.every // of_sample)
+        angles = inputs[:, :, self.objective.angles]
+        readings: Real = sensors.at(self.values) @ self._observed(inputs).transpose(1, 2, 0)
         if self._gravity is not None:
             readings -= 0.5 * self._gravity * np.einsum("kdi,kdi->dk", angles, angles)[:, None, :]
         if sensors.has_delays:
             # To the second order: a delay is a small part of a period.
-            samples = sensors.delays(self.values)[:, None] * self._rates
+            samples = sensors.delays(self.values)[:, None] * (of_sample * self._rates)
             rising = np.gradient(readings, axis=-1, edge_order=2)
             readings += 0.5 * samples**2 * np.gradient(rising, axis=-1, edge_order=2) - samples * rising
-        return readings
+        passed = [
+            low_pass.at(of_sample).filtered(own, axis=-1) for low_pass, own in zip(low_passes, readings, strict=True)
+        ]
+        return np.stack(passed)[..., ::of_sample]
 
     @property
     def _rates(self) -> Real:
@@ -107,12 +111,11 @@ class SteppedMotion:
 
     @cached_property
     def residuals(self) -> Real:
-        """Measured minus modelled, centred, shape (drop, channel, time); zero where there is no sample."""
+        """Measured minus modelled and what no motion explains, shape (drop, channel, time); zero where no sample counts."""
         objective = self.objective
         with np.errstate(over="ignore", invalid="ignore"):
-            residuals = objective.records - self._readings
-            residuals -= (residuals @ objective.is_sample[:, :, None]) / objective.samples[:, None, None]
-            residuals *= objective.is_sample[:, None, :]
+            residuals = (objective.records - self._readings) * objective.is_sample[:, None, :]
+            residuals -= (residuals @ objective.free_signals) @ np.swapaxes(objective.free_signals, 1, 2)
         counted: Real = residuals * (objective.channel_weights > 0)[:, :, None]
         return counted
 
@@ -127,7 +130,7 @@ class SteppedMotion:
     def products(self) -> Real:
         """Inner products of derivatives, and of the residual as the last, with each other, by drop and channel.
 
-        Shape (drop, channel, unknown + 1, unknown + 1); what offsets explain is subtracted.
+        Shape (drop, channel, unknown + 1, unknown + 1); what a record may show whatever the motion is subtracted.
         """
         products: Real = self.linearised[0].sum(axis=0)
         return products
@@ -162,20 +165,25 @@ class SteppedMotion:
         moved_drops, starts, transitions = differentiate_motions(
             self.stepper, self.trajectory, outputs, objective.every
         )
-        products = []
+        products, at_samples = [], self._inputs(objective.every)
         for drop, (moved, samples) in enumerate(zip(moved_drops, objective.samples, strict=True)):
-            inputs, readings = self._inputs[:samples, drop], moved[:samples, :channels]
+            inputs, readings = at_samples[:samples, drop], moved[:samples, :channels]
             if self._gravity is not None:
                 readings -= self._gravity * (inputs[:, None, self.objective.angles] @ moved[:samples, channels:])
             # The unknowns of the sensors come between the parameters of the model and the initial states.
             readings = np.insert(readings, [shared] * (len(self.values) - shared), 0.0, axis=2)
             by_sensor = np.moveaxis(inputs @ np.swapaxes(direct[objective.kind[drop]], 1, 2), 0, 2)
             readings[..., : len(self.values)] += by_sensor
+            readings = objective.low_passes[drop].filtered(readings, axis=0)
             for channel, position in objective.sensors.delay_positions:
                 readings[:, channel, position] = -np.gradient(self._readings[drop, channel, :samples], edge_order=2)
                 readings[:, channel, position] *= objective.decays[drop].rate
+            readings[samples - objective.low_passes[drop].lag :] = 0.0
             columns = np.empty((channels, samples, readings.shape[2] + 1))
-            columns[..., :-1] = np.swapaxes(readings - readings.mean(axis=0), 0, 1)
+            free = objective.free_signals[drop, :samples]
+            by_sample = readings.reshape(samples, -1)
+            by_sample -= free @ (free.T @ by_sample)
+            columns[..., :-1] = np.swapaxes(readings, 0, 1)
             columns[..., -1] = self.residuals[drop, :, :samples]
             ends = (objective.decays[drop].rate * _FIRST_WINDOW * 2.0 ** np.arange(_WINDOWS - 1)).astype(np.int64)
             windows = np.split(columns, np.minimum(ends, samples), axis=1)

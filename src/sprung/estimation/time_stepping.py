@@ -13,6 +13,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.estimation.low_pass import LowPass, SampledLowPass
 from sprung.estimation.priors import scaling_direction
 from sprung.estimation.projected_response import initial_state_prior_std
 from sprung.estimation.records import channel_rate_ratios
@@ -59,6 +60,8 @@ class TimeSteppingObjective:
         Whether the sensors turn with the body, and measure the less of gravity.
     longest_step
         s: over a longer one forces do not run straight.
+    low_pass
+        Of the loggers, which all channels passed; None for none.
     """
 
     decays: Sequence[FreeDecay]
@@ -67,6 +70,7 @@ class TimeSteppingObjective:
     states: Real
     sensors_tilt: bool
     longest_step: float
+    low_pass: LowPass | None = None
 
     @cached_property
     def _kinds(self) -> list[tuple[str, float]]:
@@ -114,8 +118,9 @@ class TimeSteppingObjective:
 
     @cached_property
     def observations(self) -> Real:
-        """Samples by drop and channel, 0 where a channel is left out; shape (drop, channel)."""
-        return self.channel_weights * self.samples[:, None]
+        """Samples that count by drop and channel, 0 where a channel is left out; shape (drop, channel)."""
+        counted: Real = self.channel_weights * self.is_sample.sum(axis=1, keepdims=True)
+        return counted
 
     @cached_property
     def energy(self) -> Real:
@@ -126,9 +131,27 @@ class TimeSteppingObjective:
 
     @cached_property
     def is_sample(self) -> Real:
-        """1 where a drop has a sample, shape (drop, time)."""
-        is_sample: Real = (np.arange(self.records.shape[2]) < self.samples[:, None]).astype(float)
+        """1 where a drop has a sample that counts, shape (drop, time)."""
+        counted = self.samples - np.array([low_pass.lag for low_pass in self.low_passes])
+        is_sample: Real = (np.arange(self.records.shape[2]) < counted[:, None]).astype(float)
         return is_sample
+
+    @cached_property
+    def low_passes(self) -> tuple[SampledLowPass, ...]:
+        """The low-pass at the sampling rate of each drop."""
+        by_rate = {rate: SampledLowPass.of(self.low_pass, rate) for _, rate in self._kinds}
+        return tuple(by_rate[decay.rate] for decay in self.decays)
+
+    @cached_property
+    def free_signals(self) -> Real:
+        """What each record may show whatever the motion, orthonormal, shape (drop, time, signal); see `SampledLowPass`."""
+        of_drops = [
+            low_pass.free_signals(decay.samples) for low_pass, decay in zip(self.low_passes, self.decays, strict=True)
+        ]
+        signals = np.zeros((len(of_drops), self.records.shape[2], max(own.shape[1] for own in of_drops)))
+        for padded, own in zip(signals, of_drops, strict=True):
+            padded[: own.shape[0], : own.shape[1]] = own
+        return signals
 
     @cached_property
     def shows_scale(self) -> bool:

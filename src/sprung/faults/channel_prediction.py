@@ -12,8 +12,8 @@ from scipy.fft import dct
 from scipy.optimize import minimize_scalar
 from scipy.signal import correlate
 
+from sprung.estimation import LowPass
 from sprung.faults.candidate_fit import DRIFT_SPAN, CandidateFit
-from sprung.faults.low_pass import LowPass
 from sprung.preprocess import FreeDecay
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import Sensor, coordinates, sensor_rows, wheelbase_of

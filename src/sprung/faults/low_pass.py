@@ -1,23 +1,15 @@
-"""Low-passes of single channels: their response, and what undoes them.
-
-A low-pass that is the same in all channels changes no free vibration but the amplitudes of its modes, and no parameter. One
-in a single channel delays it, and lowers its gain as the frequency grows.
-"""
+"""What undoes the low-pass of a single channel, which delays it, and lowers its gain as the frequency grows."""
 
 from __future__ import annotations
 
-from functools import lru_cache
-from typing import NamedTuple
-
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import butter
 
+from sprung.estimation import LowPass
 from sprung.faults.correction import Correction
 from sprung.preprocess import detect_release
 
 Real = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 _PASSED = 30.0
 """Hz up to which a low-pass is undone: vehicles vibrate below."""
@@ -36,48 +28,6 @@ _LEAST_GAIN = 0.1
 
 _FREQUENCIES = 400
 """Frequencies up to half the sampling rate at which the response is prescribed."""
-
-
-class LowPass(NamedTuple):
-    """A Butterworth low-pass.
-
-    Attributes
-    ----------
-    corner
-        At which its gain is 0.71, Hz.
-    order
-        1 for one resistor and one capacitor.
-    """
-
-    corner: float
-    order: int
-
-    @property
-    def poles(self) -> Complex:
-        """Its poles, 1/s, shape (order,)."""
-        poles: Complex = 2 * np.pi * self.corner * _unit_poles(self.order)
-        return poles
-
-    @property
-    def delay(self) -> float:
-        """By how much it delays slow motions, s."""
-        return delay_times_corner(self.order) / self.corner
-
-    def response(self, s: Complex) -> Complex:
-        """Return its response at complex frequencies, 1/s."""
-        poles = self.poles
-        response: Complex = np.prod(-poles) / np.prod(np.asarray(s)[..., None] - poles, axis=-1)
-        return response
-
-
-@lru_cache
-def _unit_poles(order: int) -> Complex:
-    return np.asarray(butter(order, 1.0, analog=True, output="zpk")[1], dtype=np.complex128)
-
-
-def delay_times_corner(order: int) -> float:
-    """Return the delay of slow motions by a Butterworth low-pass of an order, s, times its corner frequency, Hz."""
-    return float(np.sum(-1 / _unit_poles(order)).real / (2 * np.pi))
 
 
 def undo_low_pass(channel: int, low_pass: LowPass) -> Correction:

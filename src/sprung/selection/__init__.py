@@ -12,6 +12,7 @@ from sprung.selection.error_budget import FALSE_ALARM_SHARE, required_gain
 from sprung.selection.finite_rotation import select_finite_rotation
 from sprung.selection.from_ordinary_vehicle import select_flexible_body
 from sprung.selection.linear_terms import ENGINE, SEPARATE_TRACKS, STARTED_LATER
+from sprung.selection.low_pass import confirm_low_pass, select_low_pass
 from sprung.selection.model_term import ModelTerm
 from sprung.selection.nonlinear import select_nonlinear_terms
 from sprung.selection.scoring import WORTH_A_FIT, score_terms
@@ -41,6 +42,7 @@ __all__ = [
     "SelectionStep",
     "TermDescription",
     "choose_structure",
+    "confirm_low_pass",
     "describe_terms",
     "fit_forced_terms",
     "fit_requested_terms",
@@ -57,6 +59,7 @@ __all__ = [
     "select_flexible_body",
     "select_gravity_leakage",
     "select_linear_terms",
+    "select_low_pass",
     "select_nonlinear_terms",
     "select_roll_axis_height",
     "try_term",

@@ -156,7 +156,9 @@ def _stepped(search: ModelSearch, terms: Sequence[str]) -> Scores:
     """
     alike = [term for term in terms if not TERMS[term].adds_coordinates]
     groups = [alike, *([term] for term in terms if TERMS[term].adds_coordinates)]
-    decays, part = thinned(search.decays, _RATE, _DURATION)
+    # Behind a low-pass the motion between the samples that are left would be missed.
+    rate = _RATE if search.structure.low_pass is None else np.inf
+    decays, part = thinned(search.decays, rate, _DURATION)
     gains = {
         term: gain / part for group in groups if group for term, gain in _score_together(search, decays, group).items()
     }
@@ -179,4 +181,5 @@ def _score_together(search: ModelSearch, decays: Sequence[FreeDecay], terms: Seq
             term: [(name,) for name in TERMS[term].parameters(largest.tracks, largest.layout)] for term in terms
         },
         tilting=search.structure.gravity_leakage,
+        low_pass=search.structure.low_pass,
     )

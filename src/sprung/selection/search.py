@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from sprung.assessment import estimate_model_error
 from sprung.display import shown
-from sprung.estimation import NEAR, FitResult, per_total_mass, wald_test
+from sprung.estimation import NEAR, FitResult, per_total_mass, unexplained_squares, wald_test
 from sprung.preprocess import FreeDecay
 from sprung.progress import Progress, silent
 from sprung.selection.error_budget import LEAST_SHARE, MODEL_ERROR, OVERDISPERSED, UNEXPLAINED, required_gain
@@ -274,9 +274,18 @@ class ModelSearch:
         Parameters
         ----------
         other
-            Another fit of the same decays.
+            Another fit of the same decays. Where one of them has a low-pass of the loggers, what records may show behind it
+            whatever the motion counts for neither.
         """
-        return 2 * (self.fit.loglikelihood - other.fit.loglikelihood) / self.overdispersion
+        low_pass = self.structure.low_pass or other.structure.low_pass
+        if self.structure.low_pass == other.structure.low_pass:
+            return 2 * (self.fit.loglikelihood - other.fit.loglikelihood) / self.overdispersion
+        rates = [decay.rate for decay in self.fit.decays]
+        (own, samples), (others, _) = (
+            unexplained_squares(fit.residuals, rates, low_pass) for fit in (self.fit, other.fit)
+        )
+        used = own > 0
+        return float(samples[used] @ np.log(others[used] / own[used])) / self.overdispersion
 
     def delta_bic(self, other: ModelSearch) -> float:
         """Return the gain over another model beyond what the Bayesian information criterion asks for the further parameters.

@@ -158,6 +158,7 @@ def fit_structure(
         beginning_only=beginning_only,
         most=most,
         tilting=structure.gravity_leakage,
+        low_pass=structure.low_pass,
         usual=structure.usual,
         progress=progress,
     )

@@ -8,7 +8,7 @@ from functools import cached_property
 
 from sprung.campaign import Campaign
 from sprung.errors import Problems, did_you_mean
-from sprung.estimation import USUAL_ENGINE_FREQUENCY, UsualValue, VehicleSize
+from sprung.estimation import USUAL_ENGINE_FREQUENCY, LowPass, UsualValue, VehicleSize
 from sprung.uncertainty import KnownValue
 from sprung.vehicle import (
     EXTRAS,
@@ -62,6 +62,8 @@ class ModelStructure:
     gravity_leakage
         Whether the sensors tilt with the body, so that they feel the less of gravity the further it turns: an effect of the
         second order that only the model with forces beside it can show.
+    low_pass
+        Of the loggers, which all channels passed, likewise; None for none.
     unilateral_tyres
         Whether wheels may be off the ground, so that the ground is a force beside the others.
     stop_gap
@@ -89,6 +91,7 @@ class ModelStructure:
     tracks_open: bool
     open_terms: tuple[str, ...]
     gravity_leakage: bool = False
+    low_pass: LowPass | None = None
     unilateral_tyres: bool = False
     stop_gap: float = 1.0
     engine_frequency: float = USUAL_ENGINE_FREQUENCY

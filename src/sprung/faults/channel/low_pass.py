@@ -6,10 +6,11 @@ import math
 from collections.abc import Iterator
 
 from sprung.errors import Fault
+from sprung.estimation import LowPass
 from sprung.faults.channel.hypothesis import ChannelHypothesis, Numbers, Real, figures
 from sprung.faults.channel_prediction import ChannelPrediction
 from sprung.faults.correction import Correction, advance_channel
-from sprung.faults.low_pass import LowPass, delay_times_corner, recorded_energy, undo_low_pass
+from sprung.faults.low_pass import recorded_energy, undo_low_pass
 from sprung.uncertainty import round_by_uncertainty
 
 _ORDERS = {1: "first", 2: "second", 4: "fourth"}
@@ -26,7 +27,7 @@ def low_pass(prediction: ChannelPrediction) -> Iterator[ChannelHypothesis]:
 
 
 def _of_order(prediction: ChannelPrediction, order: int) -> ChannelHypothesis:
-    product = delay_times_corner(order)
+    product = LowPass(1.0, order).delay
 
     def estimated() -> tuple[Numbers, Real]:
         found = prediction.low_pass(order)

@@ -1,0 +1,196 @@
+"""The low-pass of a logger that all channels passed: what it makes of a motion, and what it remembers when a decay begins.
+
+One that is the same in all channels changes only the amplitudes of the modes of a linear vehicle. Where forces are not linear,
+knees and friction make harmonics, which it delays by other times than the wheels' motion.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.signal import butter, lfilter, lfilter_zi
+
+Real = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+HIGHEST_CORNER = 0.4
+"""Corner frequency, as a part of the sampling rate, from which a low-pass does nothing to the samples."""
+
+_FORGOTTEN = 1e-6
+"""Part of what a low-pass remembers from which its further directions count as none."""
+
+
+class LowPass(NamedTuple):
+    """A Butterworth low-pass.
+
+    Attributes
+    ----------
+    corner
+        At which its gain is 0.71, Hz.
+    order
+        1 for one resistor and one capacitor.
+    """
+
+    corner: float
+    order: int
+
+    @property
+    def poles(self) -> Complex:
+        """Its poles, 1/s, shape (order,)."""
+        poles: Complex = 2 * np.pi * self.corner * _unit_poles(self.order)
+        return poles
+
+    @property
+    def delay(self) -> float:
+        """By how much it delays slow motions, s."""
+        return float(np.sum(-1 / self.poles).real)
+
+    def response(self, s: Complex) -> Complex:
+        """Return its response at complex frequencies.
+
+        Parameters
+        ----------
+        s
+            1/s, any shape.
+
+        Returns
+        -------
+        ndarray
+            Of that shape, dimensionless.
+        """
+        poles = self.poles
+        response: Complex = np.prod(-poles) / np.prod(np.asarray(s)[..., None] - poles, axis=-1)
+        return response
+
+
+class SampledLowPass(NamedTuple):
+    """A low-pass at a sampling rate, without its delay of slow motions as far as that is a number of samples.
+
+    Attributes
+    ----------
+    low_pass
+        The low-pass; None where it does nothing.
+    rate
+        Samples per second.
+    lag
+        Samples of its delay: so many at the end of a record are not known.
+    """
+
+    low_pass: LowPass | None
+    rate: float
+    lag: int
+
+    @classmethod
+    def of(cls, low_pass: LowPass | None, rate: float) -> SampledLowPass:
+        """Return a low-pass at a sampling rate.
+
+        Parameters
+        ----------
+        low_pass
+            None for no low-pass.
+        rate
+            Samples per second.
+        """
+        if low_pass is None or low_pass.corner >= HIGHEST_CORNER * rate:
+            return cls(None, rate, 0)
+        return cls(low_pass, rate, round(low_pass.delay * rate))
+
+    def at(self, finer: int) -> SampledLowPass:
+        """Return the low-pass of signals that are sampled faster, with the same delay.
+
+        Parameters
+        ----------
+        finer
+            How many times as fast.
+        """
+        return SampledLowPass(self.low_pass, finer * self.rate, finer * self.lag)
+
+    @property
+    def coefficients(self) -> tuple[Real, Real]:
+        """Numerator and denominator of its transfer function in z⁻¹."""
+        if self.low_pass is None:
+            return np.ones(1), np.ones(1)
+        # The bilinear transformation bends high frequencies. What matters is the delay of low ones, which it leaves as it is.
+        bent = self.rate / np.pi * np.arctan(np.pi * self.low_pass.corner / self.rate)
+        numerator, denominator = butter(self.low_pass.order, bent, fs=self.rate)
+        return numerator, denominator
+
+    def filtered(self, signals: Real, axis: int) -> Real:
+        """Return signals behind the low-pass, which rested before at their first values; zero where they are not known.
+
+        Parameters
+        ----------
+        signals
+            m/s², any shape.
+        axis
+            That of time.
+        """
+        if self.low_pass is None:
+            return signals
+        numerator, denominator = self.coefficients
+        along = np.moveaxis(signals, axis, 0)
+        before = np.multiply.outer(lfilter_zi(numerator, denominator), along[0])
+        later = np.asarray(lfilter(numerator, denominator, along, axis=0, zi=before)[0])
+        whole = np.concatenate([later[self.lag :], np.zeros_like(later[: self.lag])])
+        return np.moveaxis(whole, 0, axis)
+
+    def free_signals(self, samples: int) -> Real:
+        """Return what a record may show whatever the motion: an offset, and what the low-pass remembers of earlier motions.
+
+        Parameters
+        ----------
+        samples
+            Of the record.
+
+        Returns
+        -------
+        ndarray
+            Orthonormal signals, zero where the low-pass is not known, shape (samples, signal).
+        """
+        poles = np.roots(self.coefficients[1])
+        decaying = np.exp(np.outer(np.arange(samples - self.lag), np.log(poles[poles.imag >= 0])))
+        signals = np.hstack([np.ones((len(decaying), 1)), decaying.real, decaying.imag])
+        left, sizes, _ = np.linalg.svd(signals, full_matrices=False)
+        known: Real = left[:, sizes > _FORGOTTEN * sizes[0]]
+        return np.concatenate([known, np.zeros((self.lag, known.shape[1]))])
+
+
+@lru_cache
+def _unit_poles(order: int) -> Complex:
+    return np.asarray(butter(order, 1.0, analog=True, output="zpk")[1], dtype=np.complex128)
+
+
+def unexplained_squares(
+    residuals: Sequence[Real], rates: Sequence[float], low_pass: LowPass | None
+) -> tuple[Real, Real]:
+    """Return the squares that residuals have beyond what records may show whatever the motion.
+
+    With the same low-pass, fits with and without it are compared on equal terms.
+
+    Parameters
+    ----------
+    residuals
+        Of each drop, m/s², shape (channel, time); NaN for channels that are left out.
+    rates
+        Samples per second of each drop.
+    low_pass
+        Of the loggers; None for none.
+
+    Returns
+    -------
+    squares, samples
+        Sum of squares, (m/s²)², and how many samples count, each of shape (channel,).
+    """
+    squares, counts = np.zeros(len(residuals[0])), np.zeros(len(residuals[0]))
+    for residual, rate in zip(residuals, rates, strict=True):
+        sampled, samples = SampledLowPass.of(low_pass, rate), residual.shape[1]
+        free, counted = sampled.free_signals(samples), samples - sampled.lag
+        left = residual[:, :counted] - (residual @ free) @ free[:counted].T
+        is_used = ~np.isnan(left).any(axis=1)
+        squares += np.where(is_used, np.einsum("ct,ct->c", left, left), 0.0)
+        counts += np.where(is_used, counted, 0)
+    return squares, counts

@@ -1,0 +1,100 @@
+"""The low-pass of the loggers: whether the recordings show one that all channels passed, and where its corner is.
+
+It moves no mode, but harmonics of knees and friction come later behind it than the wheels' motion. Nobody states it: the
+recordings decide by their likelihood, once the vehicle has forces that are not linear.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from sprung.estimation import HIGHEST_CORNER, LowPass
+from sprung.progress import Step
+from sprung.selection.search import ModelSearch
+
+_ORDER = 4
+"""Of the anti-alias filters of loggers."""
+
+_CORNER, _RATIO = 100.0, 1.6
+"""Corner that is tried first, Hz, and how far apart others are; half as far around one that was found."""
+
+_OPEN = LowPass(np.inf, _ORDER)
+"""That of a logger without one: its motions are stepped as finely as those before another one."""
+
+_LOWEST = 25.0
+"""Hz below which no logger cuts off the motion of wheels."""
+
+_ITERATIONS = 8
+"""Iterations at the most before corners are compared: a low-pass moves the optimum by little."""
+
+
+def select_low_pass(search: ModelSearch) -> ModelSearch:
+    """Return the search with a low-pass of the loggers before the recordings, if they support it.
+
+    Parameters
+    ----------
+    search
+        A model whose motion is computed by time stepping, and its fit.
+
+    Returns
+    -------
+    ModelSearch
+    """
+    structure = search.structure
+    if not structure.is_nonlinear or structure.low_pass is not None or not search.is_overdispersed:
+        return search
+    return _with_likeliest(search, _CORNER, _RATIO)
+
+
+def confirm_low_pass(search: ModelSearch) -> ModelSearch:
+    """Return the search with the low-pass that its final model has, or none: a term may explain now what it explained.
+
+    Parameters
+    ----------
+    search
+        A model and its fit.
+
+    Returns
+    -------
+    ModelSearch
+    """
+    found = search.structure.low_pass
+    if found is None:
+        return search
+    return _with_likeliest(search.refit(replace(search.structure, low_pass=None)), found.corner, _RATIO**0.5)
+
+
+def _with_likeliest(search: ModelSearch, first: float, ratio: float) -> ModelSearch:
+    """Return a search without a low-pass with the likeliest one: its corner is climbed to from a first one, Hz, by a ratio."""
+    structure, highest = search.structure, HIGHEST_CORNER * min(decay.rate for decay in search.decays)
+    search.progress(Step("looking for a low-pass of the loggers"))
+    without = search.refit(replace(structure, low_pass=_OPEN), _ITERATIONS, beginning_only=True)
+    gains: dict[float, float] = {}
+    waiting = [min(first, 0.9 * highest)]
+    while waiting := [corner for corner in waiting if _LOWEST < corner < highest]:
+        for corner in waiting:
+            behind = replace(structure, low_pass=LowPass(corner, _ORDER))
+            gains[corner] = search.refit(behind, _ITERATIONS, beginning_only=True).gain_over(without)
+        best = max(gains, key=lambda corner: gains[corner])
+        # Where one that is too low only loses, a higher one is tried, and then none.
+        lower = [best / ratio] * (best == min(gains) and gains[best] > 0)
+        waiting = lower + [best * ratio] * (best == max(gains) and (gains[best] > 0 or len(gains) == 1))
+    if not gains or max(gains.values()) <= search.required_of_switch:
+        return search
+    found = search.refit(replace(structure, low_pass=LowPass(_vertex(gains), _ORDER)))
+    return found if found.gain_over(search) > search.required_of_switch else search
+
+
+def _vertex(gains: Mapping[float, float]) -> float:
+    """Return the corner at which the gain is largest: the vertex of the parabola through the best one and its neighbours."""
+    corners = sorted(gains)
+    best = max(corners, key=lambda corner: gains[corner])
+    at = corners.index(best)
+    if not 0 < at < len(corners) - 1:
+        return best
+    near = corners[at - 1 : at + 2]
+    curvature, slope, _ = np.polyfit(np.log(near) - np.log(best), [gains[corner] for corner in near], 2)
+    return best * float(np.exp(-slope / (2 * curvature)))

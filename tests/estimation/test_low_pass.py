@@ -1,0 +1,51 @@
+"""The loggers' low-pass: against its analytic response, free decays of a filter, and recordings that passed one."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.signal import lfilter
+
+from sprung.estimation import LowPass, SampledLowPass, unexplained_squares
+
+RATE = 500.0
+LOGGER = LowPass(80.0, 4)
+
+
+@pytest.mark.parametrize(("order", "frequency"), [(1, 2.0), (2, 12.0), (4, 1.5), (4, 12.0), (4, 30.0)])
+def test_signals_pass_it_as_its_response_says(order: int, frequency: float) -> None:
+    low_pass = LowPass(80.0, order)
+    sampled = SampledLowPass.of(low_pass, 1000.0)
+    time = np.arange(2000) / 1000
+    found = sampled.filtered(np.sin(2 * np.pi * frequency * time)[None], axis=1)[0]
+    response = low_pass.response(np.array([2j * np.pi * frequency]))[0]
+    expected = abs(response) * np.sin(2 * np.pi * frequency * (time + sampled.lag / 1000) + np.angle(response))
+    # The bilinear transformation shifts frequencies by a part of (π f / rate)² / 3 only.
+    np.testing.assert_allclose(found[300:-50], expected[300:-50], atol=5e-3)
+    assert sampled.lag == round(low_pass.delay * 1000)
+
+
+def test_what_it_remembers_of_earlier_motions_is_free() -> None:
+    """Whatever state a filter begins with, its decay is a sum of the free signals, and so is an offset."""
+    sampled = SampledLowPass.of(LOGGER, RATE)
+    state = np.random.default_rng(3).standard_normal(4)
+    decay = lfilter(*sampled.coefficients, np.zeros(300 + sampled.lag), zi=state)[0][sampled.lag :] + 0.7
+    free = sampled.free_signals(300 + sampled.lag)
+    np.testing.assert_allclose(free.T @ free, np.eye(free.shape[1]), atol=1e-12)
+    np.testing.assert_array_equal(free[300:], 0.0)
+    np.testing.assert_allclose(free[:300] @ (free[:300].T @ decay), decay, atol=1e-9)
+
+
+def test_above_the_samples_it_does_nothing() -> None:
+    signals = np.random.default_rng(1).standard_normal((2, 50))
+    for low_pass in (None, LowPass(210.0, 4)):
+        sampled = SampledLowPass.of(low_pass, RATE)
+        assert sampled.filtered(signals, axis=1) is signals
+        np.testing.assert_allclose(sampled.free_signals(50), np.full((50, 1), 50**-0.5))
+
+
+def test_left_out_channels_have_no_squares() -> None:
+    residual = np.vstack([np.ones(100) + np.eye(1, 100, 50)[0], np.full(100, np.nan)])
+    squares, samples = unexplained_squares([residual, residual], [RATE, RATE], None)
+    np.testing.assert_allclose(squares, [2 * 0.99, 0.0])
+    np.testing.assert_array_equal(samples, [200, 0])
