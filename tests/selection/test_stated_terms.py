@@ -12,7 +12,7 @@ from sprung.analysis.analysis import Analysis
 from sprung.analysis.stages import STAGES
 from sprung.selection.term_fits import fit_forced_terms
 from sprung.uncertainty import KnownValue
-from sprung.vehicle import Sensor, Vehicle
+from sprung.vehicle import TABLE_1_CAR, Sensor, Vehicle
 
 RIG = Vehicle(model="roll-plane", m_s=433, I_xx=115, m_u=100, k_s=18e3, k_t=320e3, c_s=120, t=0.75, F=30, s=8e5)
 BOTH_ENDS = [{"excitation": "push", "wheels": ["left", "right"]}, {"excitation": "push", "wheels": ["left"]}]
@@ -52,3 +52,19 @@ def test_a_fit_comes_back_from_wheels_heavier_than_the_body() -> None:
     assert {name: found[name] for name in ("m_u", "k_t", "F")} == pytest.approx(
         {"m_u": 100.0, "k_t": 320e3, "F": 30.0}, rel=0.01
     )
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("friction", [KnownValue(60.0), KnownValue(60.0, 3.0)])
+def test_what_is_known_of_a_nonlinear_term_waits_for_it(friction: KnownValue) -> None:
+    """A friction measured beforehand, exactly or with an uncertainty: the linear fits before it have no such parameter."""
+    car = Vehicle.from_parameters(TABLE_1_CAR.parameters | {"F_f": 60.0, "F_r": 50.0})
+    drops = [{"wheels": wheels} for wheels in (("fl", "fr"), ("rl", "rr"), ("fl", "rl"))]
+    known = {"total_mass": KnownValue(TABLE_1_CAR.total_mass), "F_f": friction}
+    campaign = sprung.simulate(car, drops=drops, noise=0.02, seed=1, duration=2, known=known)
+    result = sprung.identify(campaign, tracks="shared", extras=["friction"])
+    assert result.verdict.state == "accept"
+    assert not result.faults
+    # Three times what the noise leaves of it without the statement.
+    assert result.parameters["F_f"].value == pytest.approx(60.0, abs=0.5)
+    assert result.parameters["F_r"].value == pytest.approx(50.0, abs=0.5)

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from sprung.estimation.starts import VehicleSize
 from sprung.uncertainty import KnownValue
-from sprung.vehicle import Readout, Sensor, layout_of, parameter_of, uncertainties_of
+from sprung.vehicle import PARAMETERS, Readout, Sensor, layout_of, parameter_of, uncertainties_of
 
 
 def statements_of(
@@ -17,7 +17,7 @@ def statements_of(
     Parameters
     ----------
     known
-        What is stated of the vehicle and of loads, SI.
+        What is stated of the vehicle and of loads, SI. Parameters of terms that the model has not yet are left out.
     sensors
         With the uncertainties of their gains, places and delays.
     names
@@ -29,7 +29,8 @@ def statements_of(
     """
     spread = {name: parameter_of(name).usual_std for name in names}
     usual = {name: KnownValue(0.0, std) for name, std in spread.items() if std > 0}
-    return {**usual, **known, **uncertainties_of(sensors)}
+    stated = {name: value for name, value in known.items() if name in names or name not in PARAMETERS}
+    return {**usual, **stated, **uncertainties_of(sensors)}
 
 
 def readout_of(sensors: Sequence[Sensor], names: Sequence[str], known: Mapping[str, KnownValue]) -> Readout:

@@ -19,7 +19,7 @@ from sprung.faults.correction import Correction, mask_channel
 from sprung.faults.fault_scores import FaultScore
 from sprung.faults.residual_table import ResidualTable, reference_noise, residual_table
 from sprung.preprocess import FreeDecay, SensorNoise, prepare
-from sprung.selection import ModelStructure, choose_structure
+from sprung.selection import ModelStructure
 from sprung.vehicle import LinearModel
 
 Real = NDArray[np.float64]
@@ -178,7 +178,7 @@ class CandidateFit:
     def _corrected(self, correction: Correction, start: FitResult | None, most: int) -> CandidateFit:
         campaign, before = correction.of_campaign(self.campaign), self.structure
         decays = correction.of_decays(campaign, self.decays)
-        structure = replace(choose_structure(campaign, before.tracks, before.terms), carried_at=before.carried_at)
+        structure = replace(ModelStructure.decided(campaign, before.tracks, before.terms), carried_at=before.carried_at)
         start = self.fit if start is None and structure.needs_start else start
         candidate = _candidate(structure, self.recordings, decays, _fitted(structure, decays, start, most))
         is_same = correction.samples is None and not correction.corners

@@ -103,6 +103,19 @@ class ModelStructure:
     assumed_heights: Heights | None = None
     sinking: Mapping[str, float] = field(default_factory=dict)
 
+    @classmethod
+    def decided(cls, campaign: Campaign, tracks: Tracks, terms: tuple[str, ...]) -> ModelStructure:
+        """Return the structure with some tracks and terms, about which the recordings decide nothing.
+
+        Parameters
+        ----------
+        campaign
+            The campaign; what it states of other terms is of no use.
+        tracks, terms
+            Of the structure.
+        """
+        return cls(campaign, tracks, terms, _everything_known(campaign), False, ())
+
     @property
     def heights(self) -> Heights:
         """Heights of the campaign, with the one at which the body is carried sideways, or those assumed."""
@@ -256,11 +269,6 @@ def choose_structure(
             )  # fmt: skip
     problems.raise_if_any()
 
-    known = dict(campaign.known)
-    if campaign.wheelbase is not None:
-        known["wheelbase"] = campaign.wheelbase
-    for load in campaign.loads:
-        known |= load.uncertain_masses
     undecided = layout.rolls and tracks is None and campaign.model.tracks is None and not apart and not together
     # Where heights are known they say all that gravity does.
     said = (*campaign.model.forbid, *(("gravity",) if campaign.heights.has_effect else ()))
@@ -269,7 +277,17 @@ def choose_structure(
         extra for extra in EXTRAS if wanted is None and extra not in (*said, SEAT_LOAD) and extra in terms_of(layout)
     )
     ordered = tuple(extra for extra in EXTRAS if extra in chosen_extras)
-    return ModelStructure(campaign, chosen, ordered, known, undecided, free)
+    return replace(ModelStructure.decided(campaign, chosen, ordered), tracks_open=undecided, open_terms=free)
+
+
+def _everything_known(campaign: Campaign) -> Mapping[str, KnownValue]:
+    """Return what a campaign states of the vehicle, with its wheelbase, and of the masses of its loads, SI, by name."""
+    known = dict(campaign.known)
+    if campaign.wheelbase is not None:
+        known["wheelbase"] = campaign.wheelbase
+    for load in campaign.loads:
+        known |= load.uncertain_masses
+    return known
 
 
 def _check_extra(

@@ -30,6 +30,8 @@ def known_quantities(base: CandidateFit) -> Iterator[Hypothesis]:
         fault = Fault("known", where, what, "Exchange the two in the campaign file.")
         yield _stating(base, fault, {**known, "front_axle_mass": rear, "rear_axle_mass": front})
     for name, stated in known.items():
+        if name in PARAMETERS and name not in base.structure.names:
+            continue  # of a term that the model has not yet
         rest = {key: value for key, value in known.items() if key != name}
         hypothesis = _stating(base, Fault("known", f"known.{name}", "", ""), rest)
         yield replace(hypothesis, fault=_contradicted(name, stated, hypothesis.candidate))

@@ -26,7 +26,7 @@ from sprung.preprocess import (
     redetect_dropped_wheels,
 )
 from sprung.progress import Progress, silent
-from sprung.selection import choose_structure
+from sprung.selection import ModelStructure
 
 _HYPOTHESES = (mirrored_positions, upside_down, other_origin, exchanged_axes, exchanged_sides)
 """In the order in which they are believed where the recordings cannot tell them apart."""
@@ -146,7 +146,7 @@ def _most_likely(campaign: Campaign, explaining: Sequence[CommonCause]) -> Commo
     """Fit the campaign with each correction, and take the one with which the recordings are most likely."""
     fitted = []
     for fault, changed in explaining:
-        base = CandidateFit.of(choose_structure(changed, "shared", ()), prepare(changed).decays)
+        base = CandidateFit.of(ModelStructure.decided(changed, "shared", ()), prepare(changed).decays)
         samples = max(float(base.table.counts.sum()), 1.0)
         fitted.append((base.table.cost / samples, samples, base.fit.overdispersion, fault, changed))
     best, samples, overdispersion, fault, changed = min(fitted, key=lambda each: each[0])
