@@ -118,18 +118,14 @@ class RecordBatch:
         most
             Records at the most; those much shorter than the others are left out.
         """
-        step = float(self.step[group])
-        own = np.arange(len(self.group))[self.members(group)]
-        long = own[2 * self.samples[own] >= self.samples[own].max()][:most].tolist()
-        every = max(int(1 / (step * rate)), 1)
-        samples = min(int(longest / step), int(self.samples[long].min()))
-        cut = [split_into_blocks(self.record(i)[:, :samples:every]) for i in long]
+        long, records, step = self.thinned(group, rate, longest, most)
+        cut = [split_into_blocks(record) for record in records]
         return RecordBatch(
             positions=self.positions[long],
             group=np.zeros(len(long), dtype=np.int64),
             load=self.load[group : group + 1],
-            step=np.array([every * step]),
-            samples=np.full(len(long), -(-samples // every)),
+            step=np.array([step]),
+            samples=np.full(len(long), records.shape[2]),
             channel_weights=self.channel_weights,
             energy=np.array([np.einsum("bct,bct->c", record, record) for record in cut]),
             blocks=np.concatenate(cut),
@@ -142,9 +138,24 @@ class RecordBatch:
             flight_information=self.flight_information[long],
         )
 
-    def shortened(self, duration: float) -> RecordBatch:
-        """Return decimated records cut to a duration, s."""
-        return self.decimated(0, 1.0 / float(self.step[0]), duration, len(self.samples))
+    def thinned(self, group: int, rate: float, longest: float, most: int) -> tuple[list[int], Real, float]:
+        """Return the positions of records of a group, samples of them as of `decimated`, and the interval of these, s.
+
+        Returns
+        -------
+        positions
+            In the batch.
+        records
+            Shape (record, channel, time).
+        step
+            s.
+        """
+        step = float(self.step[group])
+        own = np.arange(len(self.group))[self.members(group)]
+        long = own[2 * self.samples[own] >= self.samples[own].max()][:most].tolist()
+        every = max(int(1 / (step * rate)), 1)
+        samples = min(int(longest / step), int(self.samples[long].min()))
+        return long, np.array([self.record(i)[:, :samples:every] for i in long]), every * step
 
     def record(self, index: int) -> Real:
         """Centred record, shape (channel, time)."""
