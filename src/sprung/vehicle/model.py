@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
@@ -47,8 +47,19 @@ class Matrices(NamedTuple):
     @property
     def state(self) -> Array:
         """State matrix A of eq. (4), shape (..., n + m, n + m), for the state {X, Ẋ}."""
-        forces = np.concatenate([self.K, self.C[..., : self.massive]], axis=-1)
-        return state_matrix(-np.linalg.inv(self.leading) @ forces, self.massive)
+        return self.state_and_leading_inverse(self.massive)[0]
+
+    def state_and_leading_inverse(self, massive: int) -> tuple[Array, Array]:
+        """Return the state matrix and the inverse of L, shape (..., n, n).
+
+        Parameters
+        ----------
+        massive
+            Number of coordinates that move a mass.
+        """
+        inverse = np.linalg.inv(self._leading(massive))
+        forces = np.concatenate([self.K, self.C[..., :massive]], axis=-1)
+        return state_matrix(-inverse @ forces, massive), inverse
 
     @property
     def massive(self) -> int:
@@ -58,7 +69,9 @@ class Matrices(NamedTuple):
     @property
     def leading(self) -> Array:
         """Coefficients of the highest derivatives, L, shape (..., n, n)."""
-        m = self.massive
+        return self._leading(self.massive)
+
+    def _leading(self, m: int) -> Array:
         return self.M if m == self.M.shape[-1] else np.concatenate([self.M[..., :m], self.C[..., m:]], axis=-1)
 
     def deflection(self, force: ArrayLike) -> Array:
@@ -144,15 +157,10 @@ class Rows:
         KeyError
             If a row depends on a parameter that is not listed.
         """
-        index = {name: i for i, name in enumerate(names, start=1)}
-        position = {coordinate: i for i, coordinate in enumerate((*coordinates(names), *further))}
-        affine = np.zeros((len(rows), len(position), 1 + len(names)))
-        for row, block in zip(rows, affine, strict=True):
-            for name, shape in (("", row.constant), *row.slopes.items()):
-                for coordinate, value in shape.items():
-                    # Rows of sensors and loads hold whatever the body may do, also what this vehicle's does not.
-                    if coordinate in position:
-                        block[position[coordinate], index[name] if name else 0] = value
+        every = (*coordinates(names), *further)
+        affine = np.zeros((len(rows), len(every), 1 + len(names)))
+        for number, coordinate, factor, value in _entries(rows, names, every):
+            affine[number, coordinate, factor] = value
         return cls(affine)
 
     def at(self, values: ArrayLike) -> Array:
@@ -165,6 +173,20 @@ class Rows:
     def slopes(self) -> Array:
         """Derivative of each row by each parameter; shape (row, parameter, coordinate)."""
         return np.ascontiguousarray(np.swapaxes(self.affine[:, :, 1:], 1, 2))
+
+
+def _entries(
+    rows: Sequence[Row], names: Sequence[str], every: Sequence[str]
+) -> Iterator[tuple[int, int, int, float]]:
+    """Yield the entries of rows: row, coordinate among all of them, parameter counted from 1 or 0 for none, and value."""
+    index = {"": 0, **{name: i for i, name in enumerate(names, start=1)}}
+    position = {coordinate: i for i, coordinate in enumerate(every)}
+    for number, row in enumerate(rows):
+        for name, shape in (("", row.constant), *row.slopes.items()):
+            for coordinate, value in shape.items():
+                # Rows of sensors and loads hold whatever the body may do, also what this vehicle's does not.
+                if coordinate in position:
+                    yield number, position[coordinate], index[name], value
 
 
 @shown
@@ -226,13 +248,13 @@ class LinearModel:
         kappa, size = np.array(coefficients, dtype=float).reshape(-1, 2).T
         laws = np.array([LINEAR_LAWS.index(one.law) for one in elements], dtype=np.int64)
         used = {coordinate for one in elements for coordinate in one.row.constant}
-        further = unconstrained(names) if used.intersection(UNCONSTRAINED) else ()
-        rows = Rows.of([one.row for one in elements], names, further).affine
-        n, base = rows.shape[1], 1 + len(names)
+        every = (*coordinates(names), *(unconstrained(names) if used.intersection(UNCONSTRAINED) else ()))
+        n, base = len(every), 1 + len(names)
         # Every pair of an element's entries, each of a coordinate and a factor, the constant among these, is a part of κ g gᵀ.
-        owner, coordinate, factor = np.nonzero(rows)
-        entry = rows[owner, coordinate, factor]
-        counts = np.bincount(owner, minlength=len(rows))
+        entries = [one for one in _entries([one.row for one in elements], names, every) if one[3]]
+        owner, coordinate, factor = np.array([one[:3] for one in entries], dtype=np.int64).reshape(-1, 3).T
+        entry = np.array([one[3] for one in entries])
+        counts = np.bincount(owner, minlength=len(elements))
         begins = np.cumsum(counts) - counts
         first = np.repeat(np.arange(len(owner)), counts[owner])
         second = np.arange(len(first)) - np.repeat(np.cumsum(counts**2) - counts**2, counts**2)
@@ -245,8 +267,10 @@ class LinearModel:
         sums = np.bincount(place, size[own] * entry[first] * entry[second], math.prod(shape))
         terms = np.asarray(sums, dtype=np.float64).reshape(shape)
         kept = terms.any(axis=(1, 2, 3))
-        products = np.stack(np.unravel_index(codes[kept], (base, base, base)), axis=1)
-        return cls(tuple(names), products, terms[kept], tuple(elements))
+        if not kept.all():
+            codes, terms = codes[kept], terms[kept]
+        products = np.stack(np.unravel_index(codes, (base, base, base)), axis=1)
+        return cls(tuple(names), products, terms, tuple(elements))
 
     def with_known(self, known: Mapping[str, float]) -> LinearModel:
         """Return the model in which some parameters that multiply elements are known numbers, SI by name."""
@@ -289,8 +313,7 @@ class LinearModel:
         first, second, third = np.moveaxis(_with_one(values)[self.products], 1, 0)
         others = np.array([second * third, first * third, first * second])
         factors = self._factors if along is None else self._factors @ along.T
-        flat = np.einsum("ik,ikp->pk", others, factors) @ self._flat
-        dM, dC, dK = np.moveaxis(flat.reshape(-1, *self.terms.shape[1:]), -3, 0)
+        dM, dC, dK = self._combined(np.einsum("ik,ikp->pk", others, factors))
         if not self.is_reduced:
             return Matrices(dM, dC, dK)
         # The derivative of the Schur complement is Tᵀ dM T: that of T is multiplied by momenta, which are zero.
@@ -321,9 +344,15 @@ class LinearModel:
 
     def _all_matrices(self, values: ArrayLike) -> Array:
         """Return M, C and K over all coordinates, also those on which no force acts; shape (3, ..., all, all)."""
-        factors = _with_one(values)[..., self.products]
-        flat = factors.prod(axis=-1) @ self._flat
-        return np.moveaxis(flat.reshape(*flat.shape[:-1], *self.terms.shape[1:]), -3, 0)
+        first, second, third = np.moveaxis(_with_one(values)[..., self.products], -1, 0)
+        return self._combined(first * second * third)
+
+    def _combined(self, factors: Array) -> Array:
+        """Return sums of the terms times factors, shape (..., product); shape (3, ..., all, all)."""
+        entries, terms = self._nonzero
+        flat = np.zeros((*factors.shape[:-1], math.prod(self.terms.shape[1:])))
+        flat[..., entries] = factors @ terms
+        return np.moveaxis(flat.reshape(*factors.shape[:-1], *self.terms.shape[1:]), -3, 0)
 
     def _reduction(self, M: Array) -> Array:
         """Return all coordinates as functions of those on which forces act, T, shape (..., all, n)."""
@@ -370,9 +399,11 @@ class LinearModel:
         return np.array(heave(self.names))
 
     @cached_property
-    def _flat(self) -> Array:
-        """The terms with a row for each product."""
-        return self.terms.reshape(len(self.terms), math.prod(self.terms.shape[1:]))
+    def _nonzero(self) -> tuple[NDArray[np.int64], Array]:
+        """Entries of the matrices that any term has, and the terms in these, shape (product, entry)."""
+        flat = self.terms.reshape(len(self.terms), math.prod(self.terms.shape[1:]))
+        entries = np.flatnonzero(flat.any(axis=0))
+        return entries, np.ascontiguousarray(flat[:, entries])
 
     @cached_property
     def _factors(self) -> Array:
