@@ -119,16 +119,16 @@ class RecordBatch:
             Records at the most; those much shorter than the others are left out.
         """
         long, records, step = self.thinned(group, rate, longest, most)
-        cut = [split_into_blocks(record) for record in records]
+        blocks, samples = split_into_blocks(records), np.full(len(long), records.shape[2])
         return RecordBatch(
             positions=self.positions[long],
             group=np.zeros(len(long), dtype=np.int64),
             load=self.load[group : group + 1],
             step=np.array([step]),
-            samples=np.full(len(long), records.shape[2]),
+            samples=samples,
             channel_weights=self.channel_weights,
-            energy=np.array([np.einsum("bct,bct->c", record, record) for record in cut]),
-            blocks=np.concatenate(cut),
+            energy=_energy(blocks, samples),
+            blocks=blocks,
             clock_design=self.clock_design[:, :0],
             expected_delays=self.expected_delays[long, :0],
             delay_std=self.delay_std[long, :0],
@@ -236,17 +236,18 @@ def _batch(positions: Sequence[int], decays: Sequence[FreeDecay], names: Sequenc
     kinds = sorted(set(kind.values()))
     positions = sorted(positions, key=lambda i: kinds.index(kind[i]))
     own = [decays[i] for i in positions]
-    cut = [split_into_blocks(decay.values, decay.usable) for decay in own]
+    blocks = split_into_blocks([decay.values for decay in own], first.usable)
+    samples = np.array([decay.samples for decay in own])
     flight_values, flight_gradient, flight_information = _flights(own, names)
     return RecordBatch(
         positions=np.array(positions),
         group=np.array([kinds.index(kind[i]) for i in positions]),
         load=np.array([load for load, *_ in kinds]),
         step=np.array([step for _, step, _ in kinds]),
-        samples=np.array([decay.samples for decay in own]),
+        samples=samples,
         channel_weights=first.usable * channel_rate_ratios(first),
-        energy=np.array([np.einsum("bct,bct->c", record, record) for record in cut]),
-        blocks=np.concatenate(cut),
+        energy=_energy(blocks, samples),
+        blocks=blocks,
         clock_design=_clock_design(first),
         expected_delays=np.array([[clock.delay for clock in decay.clocks] for decay in own]),
         delay_std=np.array([[clock.delay_std for clock in decay.clocks] for decay in own]),
@@ -255,6 +256,12 @@ def _batch(positions: Sequence[int], decays: Sequence[FreeDecay], names: Sequenc
         flight_gradient=flight_gradient,
         flight_information=flight_information,
     )
+
+
+def _energy(blocks: Real, samples: Index) -> Real:
+    """Return the sum of squares of each record by its blocks, shape (record, channel)."""
+    squares, counts = np.einsum("bct,bct->bc", blocks, blocks), -(-samples // BLOCK_LENGTH)
+    return np.asarray(np.add.reduceat(squares, np.cumsum(counts) - counts, axis=0))
 
 
 def _flights(decays: Sequence[FreeDecay], names: Sequence[str]) -> tuple[Real, Real, Real]:

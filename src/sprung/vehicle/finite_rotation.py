@@ -14,7 +14,6 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import lfilter
 
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import kinematics
@@ -282,19 +281,21 @@ def _forced_rates(
     modal = weights.real @ series + 1j * (weights.imag @ series)
     poles, output = poles[upper].astype(complex), (rows @ vectors[:, upper]).astype(complex)
     z = poles[:, None] * step
-    decay = np.exp(z[:, 0])
+    turn = np.exp(z)[:, :, None]
     # Weights of u at the beginning and at the end of a step: integrals of exp(λ (step - t)) times a linear function.
     z = np.where(np.abs(z) < _STILL, _STILL, z)
     before, after = step * (np.exp(z) * (z - 1) + 1) / z**2, step * (np.exp(z) - 1 - z) / z**2
-    states = np.zeros_like(modal)
-    states[:, 1:] = before * modal[:, :-1] + after * modal[:, 1:]
-    for row, factor in zip(states, decay.tolist(), strict=True):
-        row[:] = lfilter([1.0], [1.0, -factor], row)
-    # What goes on from one drop into the next one decays there freely.
-    bounds = list(pairwise([0, *ends, states.shape[1]]))
-    powers = np.exp(poles[:, None] * step * np.arange(max(end - begin for begin, end in bounds)))
-    for begin, end in bounds:
-        states[:, begin:end] -= states[:, begin, None] * powers[:, : end - begin]
+    bounds = list(pairwise([0, *ends, modal.shape[1]]))
+    longest = max(end - begin for begin, end in bounds)
+    apart = np.zeros((len(poles), len(bounds), longest), dtype=np.complex128)
+    for drop, (begin, end) in enumerate(bounds):
+        apart[:, drop, 1 : end - begin] = before * modal[:, begin : end - 1] + after * modal[:, begin + 1 : end]
+    # What is left of each step, over twice as many of them each time.
+    reach = 1
+    while reach < longest:
+        apart[..., reach:] += turn * apart[..., :-reach]
+        turn, reach = turn * turn, 2 * reach
+    states = np.hstack([apart[:, drop, : end - begin] for drop, (begin, end) in enumerate(bounds)])
     output *= poles * np.where(poles.imag > 0, 2.0, 1.0)
     forced: Array = output.real @ states.real - output.imag @ states.imag + rows @ inputs @ series
     return forced
