@@ -386,7 +386,7 @@ class LinearModel:
 
     def velocities(self, values: ArrayLike) -> Array:
         """Return the velocities of all coordinates as functions of the state {X, Ẋ}, shape (n, n + m)."""
-        return state_matrix(self.accelerations(values)[0], self.massive)[: len(self.heave)]
+        return self.matrices(values).state_and_leading_inverse(self.massive)[0][: len(self.heave)]
 
     @cached_property
     def massive(self) -> int:
