@@ -109,7 +109,7 @@ def solve_modes(model: LinearModel, sensors: Readout, values: Real) -> ModalSolu
     """
     A, leading_inverse = model.matrices(values).state_and_leading_inverse(model.massive)
     # A real matrix whose poles are all real gives real arrays.
-    poles, right = (part.astype(np.complex128) for part in np.linalg.eig(A))
+    poles, right = (np.asarray(part, dtype=np.complex128) for part in np.linalg.eig(A))
     S = sensors.at(values)
     S = S.reshape(*S.shape[:-2], *(1,) * (A.ndim - S.ndim), *S.shape[-2:])
     modes = ModalSolution(poles, right, right, leading_inverse)

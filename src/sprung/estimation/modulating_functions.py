@@ -210,18 +210,20 @@ def _normal_equations(accelerations: Real, noise: Real, step: float, terms: Real
     """Return the normal equations of the products, what noise adds on average subtracted; shape (product, product)."""
     records, n, samples = accelerations.shape
     flat = accelerations.reshape(-1, samples)
-    kinds = np.unique(frequencies).tolist()
+    kinds = np.unique(frequencies)
     squares = np.zeros((len(kinds), 3 * n, 3 * n))
     for window in range(len(_WINDOWS)):
         *parts, overlap = _modulating_functions(samples, step, window)
         integrals = np.array([flat @ part.reshape(-1, samples).T for part in parts])
         integrals = integrals.reshape(2, records, n, -1, 3).transpose(4, 2, 0, 1, 3).reshape(3 * n, 2 * records, -1)
-        for own, total in zip(kinds, squares, strict=True):
-            weights = 1 / (overlap[:, 0, 0] + own**4 * overlap[:, 2, 2])
-            weighted = (integrals * np.sqrt(weights)).reshape(3 * n, -1)
-            total += weighted @ weighted.T - records * np.kron(np.tensordot(weights, overlap, 1), noise)
+        weights = 1 / (overlap[:, 0, 0] + kinds[:, None] ** 4 * overlap[:, 2, 2])
+        weighted = (integrals * np.sqrt(weights)[:, None, None]).reshape(len(kinds), 3 * n, -1)
+        # What noise adds is the Kronecker product of the functions' overlaps and of its covariance.
+        overlaps = np.tensordot(weights, overlap, 1)[:, :, None, :, None]
+        squares += weighted @ np.swapaxes(weighted, 1, 2)
+        squares -= records * (overlaps * noise[:, None, :]).reshape(squares.shape)
     normal = np.zeros((len(terms), len(terms)))
-    for own, total in zip(kinds, squares, strict=True):
+    for own, total in zip(kinds.tolist(), squares, strict=True):
         design = terms[:, own == frequencies]
         normal += np.tensordot(design @ total, design, axes=([1, 2], [1, 2]))
     return normal

@@ -119,7 +119,7 @@ class RecordBatch:
             Records at the most; those much shorter than the others are left out.
         """
         long, records, step = self.thinned(group, rate, longest, most)
-        blocks, samples = split_into_blocks(records), np.full(len(long), records.shape[2])
+        blocks, samples = split_into_blocks(list(records)), np.full(len(long), records.shape[2])
         return RecordBatch(
             positions=self.positions[long],
             group=np.zeros(len(long), dtype=np.int64),

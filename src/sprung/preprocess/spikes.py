@@ -133,7 +133,8 @@ def detect_spikes(values: Real, rate: float, height: float = HEIGHT) -> Flags:
     exceeds = np.maximum(inside.min(axis=1) - np.maximum(left, right), np.minimum(left, right) - inside.max(axis=1))
     # Beyond the ends nothing is smooth. The flanks are the run's own.
     beside = max(round(_AROUND * rate), _FEWEST)
-    padded = np.pad(sizes, ((0, 0), (beside, beside)), constant_values=np.inf)
+    padded = np.full((len(sizes), sizes.shape[1] + 2 * beside), np.inf)
+    padded[:, beside:-beside] = sizes
     flank = before[:, None] + np.arange(beside)
     around = padded[channel[:, None], np.concatenate([flank, flank + beside + width[:, None] + 1], axis=1)]
     allowed = [

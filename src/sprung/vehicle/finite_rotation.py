@@ -99,7 +99,8 @@ def second_order_readings(
     """
     motion, ends = np.hstack(motions), np.cumsum([one.shape[1] for one in motions])[:-1]
     matrices = model.matrices(values)
-    n, m, A = len(matrices.M), model.massive, matrices.state
+    n, m = len(matrices.M), model.massive
+    A, leading_inverse = matrices.state_and_leading_inverse(m)
     # Where no mass is, the velocity follows from the displacements, and there is no acceleration to be known.
     rates = A @ motion
     signals = np.stack([motion[:n], rates[:n], np.vstack([rates[n:], np.zeros_like(motion[: n - m])])])
@@ -114,7 +115,7 @@ def second_order_readings(
     ]
     directions = np.hstack([columns for columns, _ in forces])
     inputs = np.zeros((len(A), directions.shape[1]))
-    inputs[highest_derivatives(n, m)] = np.linalg.solve(matrices.leading, directions)
+    inputs[highest_derivatives(n, m)] = leading_inverse @ directions
     rows = np.zeros((len(sensors), len(A)))
     # The others read a motion, not the rate of a velocity: to them the second order is of no account.
     accelerometers = np.array([sensor.reads_gravity for sensor in sensors])[:, None]
@@ -243,7 +244,8 @@ def _second_of_product(one: Array, other: Array) -> Array:
 def _half_square(signals: Array) -> Array:
     """Return half the sum of both squared angles, and its derivatives by time, shape (3, time)."""
     value, rate, second = signals[:, [_PITCH, _ROLL]]
-    return np.stack([0.5 * (value * value), rate * value, second * value + rate * rate]).sum(axis=1)
+    half: Array = np.stack([0.5 * (value * value), rate * value, second * value + rate * rate]).sum(axis=1)
+    return half
 
 
 def _above_centre(heights: Heights, height: float) -> float:

@@ -19,6 +19,9 @@ from sprung.vehicle.nuisances import parameter_of
 
 Array = NDArray[np.float64]
 
+_DENSE = 600
+"""Entries of all matrices up to which zeros among them are multiplied as well."""
+
 LINEAR_LAWS: tuple[LinearLaw, ...] = ("mass", "damper", "spring")
 """Laws of the elements in M, in C and in K."""
 
@@ -57,7 +60,7 @@ class Matrices(NamedTuple):
         massive
             Number of coordinates that move a mass.
         """
-        inverse = np.linalg.inv(self._leading(massive))
+        inverse: Array = np.asarray(np.linalg.inv(self._leading(massive)), dtype=np.float64)
         forces = np.concatenate([self.K, self.C[..., :massive]], axis=-1)
         return state_matrix(-inverse @ forces, massive), inverse
 
@@ -175,9 +178,7 @@ class Rows:
         return np.ascontiguousarray(np.swapaxes(self.affine[:, :, 1:], 1, 2))
 
 
-def _entries(
-    rows: Sequence[Row], names: Sequence[str], every: Sequence[str]
-) -> Iterator[tuple[int, int, int, float]]:
+def _entries(rows: Sequence[Row], names: Sequence[str], every: Sequence[str]) -> Iterator[tuple[int, int, int, float]]:
     """Yield the entries of rows: row, coordinate among all of them, parameter counted from 1 or 0 for none, and value."""
     index = {"": 0, **{name: i for i, name in enumerate(names, start=1)}}
     position = {coordinate: i for i, coordinate in enumerate(every)}
@@ -299,9 +300,9 @@ class LinearModel:
 
     def matrices(self, values: ArrayLike) -> Matrices:
         """Return M, C and K at parameter values of shape (..., parameter), in the order of `names`."""
-        M, C, K = self._all_matrices(values)
+        M, C, K = whole = self._all_matrices(values)
         if not self.is_reduced:
-            return Matrices(M, C, K)
+            return whole
         T, n = self._reduction(M), self.size
         return Matrices(np.swapaxes(T, -1, -2) @ M @ T, C[..., :n, :n], K[..., :n, :n])
 
@@ -310,14 +311,14 @@ class LinearModel:
 
         Those along some directions, shape (direction, parameter), where these are given.
         """
-        first, second, third = np.moveaxis(_with_one(values)[self.products], 1, 0)
+        first, second, third = _with_one(values)[self._positions]
         others = np.array([second * third, first * third, first * second])
         factors = self._factors if along is None else self._factors @ along.T
-        dM, dC, dK = self._combined(np.einsum("ik,ikp->pk", others, factors))
+        dM, dC, dK = whole = self._combined(np.einsum("ik,ikp->pk", others, factors))
         if not self.is_reduced:
-            return Matrices(dM, dC, dK)
+            return whole
         # The derivative of the Schur complement is Tᵀ dM T: that of T is multiplied by momenta, which are zero.
-        T, n = self._reduction(self._all_matrices(values)[0]), self.size
+        T, n = self._reduction(self._all_matrices(values).M), self.size
         return Matrices(np.swapaxes(T, -1, -2) @ dM @ T, dC[..., :n, :n], dK[..., :n, :n])
 
     @cached_property
@@ -340,19 +341,23 @@ class LinearModel:
         """Return the coordinates `UNCONSTRAINED` as functions of the others, shape (3, n); 0 where no mass moves along them."""
         if not self.is_reduced:
             return np.zeros((len(UNCONSTRAINED), self.size))
-        return self._reduction(self._all_matrices(values)[0])[self.size :]
+        return self._reduction(self._all_matrices(values).M)[self.size :]
 
-    def _all_matrices(self, values: ArrayLike) -> Array:
-        """Return M, C and K over all coordinates, also those on which no force acts; shape (3, ..., all, all)."""
-        first, second, third = np.moveaxis(_with_one(values)[..., self.products], -1, 0)
-        return self._combined(first * second * third)
+    def _all_matrices(self, values: ArrayLike) -> Matrices:
+        """Return M, C and K over all coordinates, also those on which no force acts; each of shape (..., all, all)."""
+        factors = _with_one(values)[..., self._positions]
+        return self._combined(factors[..., 0, :] * factors[..., 1, :] * factors[..., 2, :])
 
-    def _combined(self, factors: Array) -> Array:
-        """Return sums of the terms times factors, shape (..., product); shape (3, ..., all, all)."""
+    def _combined(self, factors: Array) -> Matrices:
+        """Return sums of the terms times factors, shape (..., product); each of shape (..., all, all)."""
         entries, terms = self._nonzero
-        flat = np.zeros((*factors.shape[:-1], math.prod(self.terms.shape[1:])))
-        flat[..., entries] = factors @ terms
-        return np.moveaxis(flat.reshape(*factors.shape[:-1], *self.terms.shape[1:]), -3, 0)
+        if entries is None:
+            flat = factors @ terms
+        else:
+            flat = np.zeros((*factors.shape[:-1], math.prod(self.terms.shape[1:])))
+            flat[..., entries] = factors @ terms
+        whole = flat.reshape(*factors.shape[:-1], *self.terms.shape[1:])
+        return Matrices(whole[..., 0, :, :], whole[..., 1, :, :], whole[..., 2, :, :])
 
     def _reduction(self, M: Array) -> Array:
         """Return all coordinates as functions of those on which forces act, T, shape (..., all, n)."""
@@ -399,9 +404,19 @@ class LinearModel:
         return np.array(heave(self.names))
 
     @cached_property
-    def _nonzero(self) -> tuple[NDArray[np.int64], Array]:
-        """Entries of the matrices that any term has, and the terms in these, shape (product, entry)."""
+    def _positions(self) -> NDArray[np.int64]:
+        """The products by factor, shape (3, product)."""
+        return np.ascontiguousarray(self.products.T)
+
+    @cached_property
+    def _nonzero(self) -> tuple[NDArray[np.int64] | None, Array]:
+        """Entries of the matrices that any term has, None for all, and the terms in these, shape (product, entry).
+
+        Of a large vehicle most are zero.
+        """
         flat = self.terms.reshape(len(self.terms), math.prod(self.terms.shape[1:]))
+        if flat.shape[1] <= _DENSE:
+            return None, flat
         entries = np.flatnonzero(flat.any(axis=0))
         return entries, np.ascontiguousarray(flat[:, entries])
 
@@ -414,4 +429,6 @@ class LinearModel:
 
 def _with_one(values: ArrayLike) -> Array:
     values = np.asarray(values, dtype=float)
-    return np.concatenate([np.ones((*values.shape[:-1], 1)), values], axis=-1)
+    with_one = np.ones((*values.shape[:-1], 1 + values.shape[-1]))
+    with_one[..., 1:] = values
+    return with_one
