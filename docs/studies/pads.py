@@ -20,7 +20,7 @@ from pages import arguments, figures, report_progress, run, table, write
 from parts_of_a_vehicle import PITCH_PLANE, QUARTER_CAR, ROLL_PLANE
 
 import sprung
-from sprung.estimation.joint_objective import linear_objective
+from sprung.estimation.closed_form import linear_objective
 from sprung.preprocess import prepare
 from sprung.simulation import PadMotion
 from sprung.vehicle import TABLE_1_CAR, Readout, Vehicle

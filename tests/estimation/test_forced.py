@@ -15,9 +15,9 @@ from estimation.test_likelihood import WITH_RUBBER as RUBBER
 from sprung import simulate
 from sprung.campaign import Campaign
 from sprung.estimation import fit_jointly, fit_linear
-from sprung.estimation.closed_form import ClosedFormObjective
+from sprung.estimation.closed_form import ClosedFormObjective, linear_objective
 from sprung.estimation.forced import ForcedAt, ForcedObjective
-from sprung.estimation.joint_objective import JointObjective, linear_objective
+from sprung.estimation.joint_objective import JointObjective
 from sprung.estimation.linear_fit import problem_of
 from sprung.preprocess import FreeDecay, prepare
 from sprung.simulation import PadMotion

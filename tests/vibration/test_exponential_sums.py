@@ -40,16 +40,16 @@ def test_correlate_is_the_inner_product_with_centred_records(samples: tuple[int,
     random = np.random.default_rng(1)
     records = [random.standard_normal((5, count)) for count in samples]
     exponent = np.array([-0.01 + 0.1j, -0.3 + 0j, -0.002 - 0.02j])
-    cut = [split_into_blocks(record) for record in records]
-    counts = np.array([len(one) for one in cut])
+    blocks = split_into_blocks(records)
+    counts = np.array([-(-count // BLOCK_LENGTH) for count in samples])
     same = np.zeros(len(samples), dtype=np.int64)
-    found = correlate_with_exponentials(np.concatenate(cut), counts, exponent[None], same)
+    found = correlate_with_exponentials(blocks, counts, exponent[None], same)
     for whole, products in zip(records, found, strict=True):
         k, record = np.arange(whole.shape[1]), whole - whole.mean(axis=1, keepdims=True)
         powers = np.exp(exponent[:, None] * k)
         np.testing.assert_allclose(products[:, 0], record @ powers.conj().T, rtol=0, atol=1e-11)
         np.testing.assert_allclose(products[:, 1], record @ (k * powers).conj().T, rtol=0, atol=1e-8)
-    alone = correlate_with_exponentials(np.concatenate(cut), counts, exponent[None], same, secular=False)
+    alone = correlate_with_exponentials(blocks, counts, exponent[None], same, secular=False)
     np.testing.assert_allclose(alone, found[:, :, :1], rtol=0, atol=1e-12)
 
 

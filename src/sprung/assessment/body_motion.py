@@ -112,22 +112,22 @@ def body_motions(
     at_rest = sum(decay.rest.noise.shape[1] for decay in decays)
     known_from = float(at_rest or sum(decay.samples for decay in decays))
     # Drops usually have all their channels, and then one inverse.
-    inverses = {
-        used: motion_from_channels(rows, np.where(used, noise, np.inf))
-        for used in {tuple(decay.usable.tolist()) for decay in decays}
-    }
+    inverses: dict[tuple[bool, ...], tuple[Real, Real]] = {}
+    for used in {tuple(decay.usable.tolist()) for decay in decays}:
+        own = motion_from_channels(rows, np.where(used, noise, np.inf))
+        determined = np.abs(own @ rows - np.eye(3)).max(axis=1) < _SEEN
+        inverses[used] = np.where(determined[:, None], own, np.nan)[:, np.array(used)], np.sqrt(own**2 @ noise**2)
     motions = []
     for decay, modelled in zip(decays, fitted, strict=True):
-        inverse = inverses[tuple(decay.usable.tolist())]
-        centred = np.where(decay.usable[:, None], decay.values - decay.values.mean(axis=1, keepdims=True), 0.0)
-        determined = np.abs(inverse @ rows - np.eye(3)).max(axis=1) < _SEEN
+        inverse, of_motion = inverses[tuple(decay.usable.tolist())]
+        measured = inverse @ decay.values[decay.usable]
         motions.append(
             BodyMotion(
                 name=decay.name,
                 time=decay.start + np.arange(decay.samples) / decay.rate,
-                measured=np.where(determined[:, None], inverse @ centred, np.nan),
-                simulated=np.where(determined[:, None], inverse @ np.nan_to_num(modelled), np.nan),
-                noise=np.sqrt(inverse**2 @ noise**2),
+                measured=measured - measured.mean(axis=1, keepdims=True),
+                simulated=inverse @ modelled[decay.usable],
+                noise=of_motion,
                 noise_samples=known_from,
             )
         )

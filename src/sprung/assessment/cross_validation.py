@@ -104,8 +104,7 @@ def cross_validate_drops(
         decays, motions, predicted, fit.residual, describe_residuals(fit, decays, noise), observations, strict=True
     )
     for decay, motion, prediction, residual, statistics, counts in of_drops:
-        values = np.nan_to_num(decay.values)
-        energy = max(float(values.var(axis=1) @ weights) * decay.samples, np.finfo(float).tiny)
+        energy = max(float(np.nan_to_num(decay.energy) @ weights), np.finfo(float).tiny)
         # On pads the lines up to a frequency are fitted, and the motion of each pad takes up one number of each.
         taken = float(counts.max() * len(decay.pads)) if decay.pads else 0.0
         samples = max(float(counts.sum()) - int(decay.usable.sum()) - free - taken, 1.0)

@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.estimation import FitResult
-from sprung.preprocess import pool_moments
 
 Real = NDArray[np.float64]
 
@@ -37,7 +36,7 @@ def estimate_model_error(fit: FitResult) -> tuple[Real, Real]:
     variance than at rest. Each counts where it exceeds its sampling error, and the larger of the two is taken.
     """
     variance, neighbour, samples = fit.residual_moments
-    signal, _, _ = pool_moments(decay.values - decay.values.mean(axis=1, keepdims=True) for decay in fit.decays)
+    signal = np.nansum([decay.energy for decay in fit.decays], axis=0) / np.maximum(samples, 1.0)
     noise = fit.sensor_noise
     known = noise.samples > 0
 

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from sprung.estimation.closed_form_likelihood import ClosedFormAt
 from sprung.estimation.modal_solution import solve_modes
 from sprung.estimation.modulating_functions import modulating_function_estimate
-from sprung.estimation.objective import ObjectiveAt
+from sprung.estimation.objective import LinearObjective, ObjectiveAt
 from sprung.estimation.projected_response import ExponentialSums
 from sprung.estimation.records import RecordBatch, batch_records, in_order
 from sprung.estimation.start_ranking import rank_starts
@@ -31,6 +31,33 @@ _UNBOUNDED = 100.0
 
 _MEETING = 0.05
 """Separation below which two modes have all but met in one shape."""
+
+
+def linear_objective(
+    decays: Sequence[FreeDecay], models: Mapping[str, LinearModel], sensors: Readout, channels: Sequence[Sensor]
+) -> LinearObjective:
+    """Return the likelihood of records of a linear vehicle, free or driven or both.
+
+    Parameters
+    ----------
+    decays
+        The records.
+    models
+        Equations of motion by load name, all over the same parameters.
+    sensors
+        The sensors over the fit's parameters.
+    channels
+        The same as they are stated.
+
+    Returns
+    -------
+    LinearObjective
+    """
+    if not any(decay.pads for decay in decays):
+        return ClosedFormObjective(tuple(decays), models, sensors)
+    from sprung.estimation.joint_objective import driven_objective  # noqa: PLC0415 (only records on pads need it)
+
+    return driven_objective(decays, models, sensors, channels)
 
 
 @dataclass(frozen=True, eq=False)

@@ -184,16 +184,25 @@ class ClosedFormAt:
         SI, shape (state, before + after).
         """
         load, step = self._load(drop)
-        poles, shapes = self.modes.poles[load], self.modes.right[load]
-        amplitudes = self.modes.left[load] @ self.states[drop]
-        # A pole and its conjugate add the same real part twice.
-        upper = poles.imag >= 0
-        coefficients = shapes[:, upper] * (amplitudes[upper] * np.where(poles[upper].imag > 0, 2.0, 1.0))
+        poles, left, shapes = self._upper[load]
+        coefficients = shapes * (left @ self.states[drop])
         motion = np.empty((len(shapes), before + after))
-        motion[:, before:] = real_product(coefficients, exponentials(poles[upper] * step, after))
-        powers = turns(np.outer(np.arange(-before, 0) * step, poles[upper]))
-        motion[:, :before] = real_product(coefficients, powers)
+        motion[:, before:] = real_product(coefficients, exponentials(poles * step, after))
+        if before:
+            powers = turns(np.outer(np.arange(-before, 0) * step, poles))
+            motion[:, :before] = real_product(coefficients, powers)
         return motion
+
+    @cached_property
+    def _upper(self) -> list[tuple[Complex, Complex, Complex]]:
+        """Of each load one pole of every pair, its left eigenvector, and the right one of both."""
+        found = []
+        for poles, left, right in zip(self.modes.poles, self.modes.left, self.modes.right, strict=True):
+            upper = poles.imag >= 0
+            # A pole and its conjugate add the same real part twice.
+            twice = np.where(poles[upper].imag > 0, 2.0, 1.0)
+            found.append((poles[upper], left[upper], right[:, upper] * twice))
+        return found
 
     def _load(self, drop: int) -> tuple[int, float]:
         """Return the position of a drop's load, and its sampling interval, s."""

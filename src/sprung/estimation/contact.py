@@ -15,7 +15,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.estimation.fit_result import FitResult
-from sprung.estimation.free_start import find_free_start
 from sprung.preprocess import FreeDecay
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import LinearModel, layout_of
@@ -157,6 +156,8 @@ def _shifts(decays: Sequence[FreeDecay], models: Mapping[str, LinearModel], fit:
             shifts.append(0)
             continue
         if decay.is_driven:
+            from sprung.estimation.free_start import find_free_start  # noqa: PLC0415 (only a push or a bump needs it)
+
             shifts.append(find_free_start(fit, drop) if fit.is_reversible else _landing(decay, fit, drop))
             continue
         static = compressions[decay.load][:, None]

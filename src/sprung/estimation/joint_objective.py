@@ -20,34 +20,24 @@ from sprung.vehicle import LinearModel, Readout, Sensor
 Real = NDArray[np.float64]
 
 
-def linear_objective(
+def driven_objective(
     decays: Sequence[FreeDecay], models: Mapping[str, LinearModel], sensors: Readout, channels: Sequence[Sensor]
 ) -> LinearObjective:
-    """Return the likelihood of records of a linear vehicle, free or driven or both.
+    """Return the likelihood of records of which at least some are driven, as `linear_objective` does of any.
 
     Parameters
     ----------
-    decays
-        The records.
-    models
-        Equations of motion by load name, all over the same parameters.
-    sensors
-        The sensors over the fit's parameters.
-    channels
-        The same as they are stated.
+    decays, models, sensors, channels
+        As for `linear_objective`.
 
     Returns
     -------
     LinearObjective
     """
-    free = [decay for decay in decays if not decay.pads]
-    driven = [decay for decay in decays if decay.pads]
-    if not driven:
-        return ClosedFormObjective(tuple(decays), models, sensors)
-    if not free:
-        return ForcedObjective(tuple(decays), models, sensors, tuple(channels))
-    both = linear_objective(free, models, sensors, channels), linear_objective(driven, models, sensors, channels)
-    return JointObjective(tuple(decays), both)
+    free = tuple(decay for decay in decays if not decay.pads)
+    driven = tuple(decay for decay in decays if decay.pads)
+    forced = ForcedObjective(driven, models, sensors, tuple(channels))
+    return JointObjective(tuple(decays), (ClosedFormObjective(free, models, sensors), forced)) if free else forced
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,8 +9,8 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.estimation.closed_form import linear_objective
 from sprung.estimation.fit_result import FitResult
-from sprung.estimation.joint_objective import linear_objective
 from sprung.estimation.objective import LinearObjective
 from sprung.estimation.priors import Coordinates, PriorsAndConstraints, UsualValue, scaling_direction
 from sprung.estimation.problem import (

@@ -7,9 +7,9 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.estimation.closed_form import linear_objective
 from sprung.estimation.eliminated_coordinates import eliminate_coordinates
 from sprung.estimation.fit_result import FitResult
-from sprung.estimation.joint_objective import linear_objective
 from sprung.estimation.linear_fit import problem_of
 from sprung.estimation.priors import Coordinates
 from sprung.estimation.problem import Iterate

@@ -36,14 +36,19 @@ class ModalSolution:
         Eigenvectors of the state matrix as columns, shape (..., mode, mode).
     shapes
         s: reading of each channel per unit of modal amplitude, shape (..., channel, mode).
-    coordinates
-        Number of coordinates.
+    leading_inverse
+        Inverse of the coefficients of the highest derivatives, shape (..., coordinate, coordinate).
     """
 
     poles: Complex
     right: Complex
     shapes: Complex
-    coordinates: int
+    leading_inverse: Real
+
+    @property
+    def coordinates(self) -> int:
+        """Number of coordinates."""
+        return int(self.leading_inverse.shape[-1])
 
     @cached_property
     def left(self) -> Complex:
@@ -102,12 +107,12 @@ def solve_modes(model: LinearModel, sensors: Readout, values: Real) -> ModalSolu
     -------
     ModalSolution
     """
-    A = model.matrices(values).state
+    A, leading_inverse = model.matrices(values).state_and_leading_inverse(model.massive)
     # A real matrix whose poles are all real gives real arrays.
-    poles, right = (part.astype(np.complex128) for part in np.linalg.eig(A))
+    poles, right = (np.asarray(part, dtype=np.complex128) for part in np.linalg.eig(A))
     S = sensors.at(values)
     S = S.reshape(*S.shape[:-2], *(1,) * (A.ndim - S.ndim), *S.shape[-2:])
-    modes = ModalSolution(poles, right, right, len(model.heave))
+    modes = ModalSolution(poles, right, right, leading_inverse)
     shapes = S @ modes.observed(sensors)
     return replace(modes, shapes=shapes * turns_of_delays(sensors, values, poles) if sensors.has_delays else shapes)
 
@@ -209,7 +214,7 @@ def differentiate_response(
     channels = len(sensors.positions)
     S = np.broadcast_to(sensors.of_accelerations(sensors.at(values)), (*lead, channels, n))
     left = modes.left[..., highest_derivatives(n, model.massive)]
-    both = np.concatenate([left, S], axis=-2) @ -np.linalg.inv(model.matrices(values).leading)
+    both = np.concatenate([left, S], axis=-2) @ -modes.leading_inverse
     changed = (both @ forces.reshape(*lead, n, -1)).reshape(*lead, m + channels, changes, m)
     D, of_sensors = changed[..., :m, :, :], changed[..., m:, :, :] + direct
 

@@ -12,7 +12,7 @@ start that is nearly there.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import lru_cache
 
 import numpy as np
@@ -26,6 +26,7 @@ from sprung.vibration import exponentials
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
+Flags = NDArray[np.bool_]
 Key = tuple[int, int, int]
 
 _WINDOWS = ((2.0, np.arange(0.0, 6.1, 0.75)), (12.0, np.arange(0.0, 24.1, 2.5)), (50.0, np.arange(0.0, 33.0, 8.0)))
@@ -81,13 +82,10 @@ def modulating_function_estimate(
         ahead = 1 + names.index("a")
         keys = [key for key in keys if key != _key(sorted((sprung, ahead, ahead)))]
     frequencies = np.array([_BODY] * len(layout.body) + [_HOP] * len(layout.wheels))
-    records = [(batch, _terms(moved[batch.load[0]], keys, size)) for batch in _decimated(batches, rows)]
-    motions = [(*_coordinates(batch, rows), float(batch.step[0]), terms) for batch, terms in records]
     normal = np.zeros((len(keys), len(keys)))
-    for window in range(len(_WINDOWS)):
-        for accelerations, noise, step, terms in motions:
-            functions = _modulating_functions(accelerations.shape[2], step, window)
-            normal += _normal_equations(accelerations, noise, functions, terms, frequencies)
+    for load, used, records, step in _thinned(batches, rows):
+        terms = _terms(moved[load], keys, size)
+        normal += _normal_equations(*_coordinates(records, rows[used]), step, terms, frequencies)
     products = _products(normal, keys, (0, 0, sprung))
     if products is None:
         return None
@@ -145,28 +143,36 @@ def _terms(model: LinearModel, keys: Sequence[Key], size: VehicleSize) -> Real:
     return terms
 
 
-def _decimated(batches: Sequence[RecordBatch], rows: Real) -> list[RecordBatch]:
-    """Return records of every load decimated, and cut to one length as far as they are of a similar one."""
-    groups = [
-        (batch, group)
-        for batch in batches
-        if np.linalg.matrix_rank(rows[batch.channel_weights > 0]) == rows.shape[1]
-        for group in range(len(batch.load))
-    ]
-    records = [batch.decimated(group, _RATE, _LONGEST, _MOST) for batch, group in groups]
-    durations = np.array([batch.duration for batch in records])
+def _thinned(batches: Sequence[RecordBatch], rows: Real) -> Iterator[tuple[int, Flags, Real, float]]:
+    """Yield the records of every load thinned, and cut to one length as far as they are of a similar one.
+
+    Yields
+    ------
+    load
+        Its position.
+    used
+        Which channels are not left out, shape (channel,).
+    records
+        Centred, shape (record, used channel, time).
+    step
+        Sampling interval, s.
+    """
+    found = []
+    for batch in batches:
+        used = batch.channel_weights > 0
+        if np.linalg.matrix_rank(rows[used]) == rows.shape[1]:
+            for group, load in enumerate(batch.load.tolist()):
+                found.append((load, used, *batch.thinned(group, _RATE, _LONGEST, _MOST)[1:]))
+    durations = np.array([records.shape[2] * step for _, _, records, step in found])
     common = durations[2 * durations > durations.max(initial=0.0)].min(initial=_LONGEST)
-    return [
-        batch if duration <= common else batch.shortened(common)
-        for batch, duration in zip(records, durations, strict=True)
-    ]
+    for (load, used, records, step), duration in zip(found, durations.tolist(), strict=True):
+        cut = records[:, used] if duration <= common else records[:, used, : int(common / step)]
+        yield load, used, cut - cut.mean(axis=2, keepdims=True), step
 
 
-def _coordinates(batch: RecordBatch, rows: Real) -> tuple[Real, Real]:
+def _coordinates(records: Real, rows: Real) -> tuple[Real, Real]:
     """Return accelerations of the coordinates, shape (record, n, time), and the covariance of their noise, shape (n, n)."""
-    used = batch.channel_weights > 0
-    to_coordinates = np.linalg.pinv(rows[used])
-    records = np.array([batch.record(i) for i in range(len(batch.samples))])[:, used]
+    to_coordinates = np.linalg.pinv(rows)
     # From differences of the last third, where hardly anything but noise is left.
     differences = np.diff(records[:, :, -max(records.shape[2] // 3, 3) :], 2, axis=2)
     noise = (to_coordinates * (np.mean(differences**2, axis=(0, 2)) / 6)) @ to_coordinates.T
@@ -200,20 +206,24 @@ def _modulating_functions(samples: int, step: float, window: int) -> tuple[Real,
     return real, imaginary, real @ np.swapaxes(real, 1, 2) + imaginary @ np.swapaxes(imaginary, 1, 2)
 
 
-def _normal_equations(
-    accelerations: Real, noise: Real, functions: tuple[Real, Real, Real], terms: Real, frequencies: Real
-) -> Real:
+def _normal_equations(accelerations: Real, noise: Real, step: float, terms: Real, frequencies: Real) -> Real:
     """Return the normal equations of the products, what noise adds on average subtracted; shape (product, product)."""
     records, n, samples = accelerations.shape
     flat = accelerations.reshape(-1, samples)
-    *parts, overlap = functions
-    integrals = np.array([flat @ part.reshape(-1, samples).T for part in parts])
-    integrals = integrals.reshape(2, records, n, -1, 3).transpose(4, 2, 0, 1, 3).reshape(3 * n, 2 * records, -1)
+    kinds = np.unique(frequencies)
+    squares = np.zeros((len(kinds), 3 * n, 3 * n))
+    for window in range(len(_WINDOWS)):
+        *parts, overlap = _modulating_functions(samples, step, window)
+        integrals = np.array([flat @ part.reshape(-1, samples).T for part in parts])
+        integrals = integrals.reshape(2, records, n, -1, 3).transpose(4, 2, 0, 1, 3).reshape(3 * n, 2 * records, -1)
+        weights = 1 / (overlap[:, 0, 0] + kinds[:, None] ** 4 * overlap[:, 2, 2])
+        weighted = (integrals * np.sqrt(weights)[:, None, None]).reshape(len(kinds), 3 * n, -1)
+        # What noise adds is the Kronecker product of the functions' overlaps and of its covariance.
+        overlaps = np.tensordot(weights, overlap, 1)[:, :, None, :, None]
+        squares += weighted @ np.swapaxes(weighted, 1, 2)
+        squares -= records * (overlaps * noise[:, None, :]).reshape(squares.shape)
     normal = np.zeros((len(terms), len(terms)))
-    for own in np.unique(frequencies):
-        weights = 1 / (overlap[:, 0, 0] + own**4 * overlap[:, 2, 2])
-        weighted = (integrals * np.sqrt(weights)).reshape(3 * n, -1)
-        noise_bias = records * np.kron(np.tensordot(weights, overlap, 1), noise)
+    for own, total in zip(kinds.tolist(), squares, strict=True):
         design = terms[:, own == frequencies]
-        normal += np.tensordot(design @ (weighted @ weighted.T - noise_bias), design, axes=([1, 2], [1, 2]))
+        normal += np.tensordot(design @ total, design, axes=([1, 2], [1, 2]))
     return normal

@@ -8,6 +8,7 @@ tested for these forces, so it has to be quick.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -127,38 +128,37 @@ def _of_drops(
     force_rows = -np.linalg.solve(model.linear.matrices(neutral).leading, model.forces.directions(neutral).T)
     driven = highest_derivatives(len(force_rows), model.linear.massive)
     participation, direct = left[:, driven] @ force_rows, at.sensor_rows @ force_rows
+    # Of all readings, the square roots of the weights in them.
+    roots = np.array(
+        [
+            np.sqrt(fit.weights * decay.usable * channel_rate_ratios(decay) * (decay.samples / count))
+            for decay, count in zip(decays, counts.tolist(), strict=True)
+        ]
+    )
 
     # What was fitted are sums of exponentials, and the samples of these are all that is needed of them.
     waves = exponentials(poles * step, samples)
     motion = real_product(amplitudes[:, None, :] * right, waves)
     within = np.arange(samples) < counts[:, None]
-    basis = np.hstack([waves, waves * (every * np.arange(samples))[:, None]]).view(float).T * within[:, None]
-    basis -= basis.sum(axis=2, keepdims=True) / counts[:, None, None] * within[:, None]
+    basis = np.hstack([waves, waves * (every * np.arange(samples))[:, None]]).view(float) * within[:, :, None]
+    basis -= basis.sum(axis=1, keepdims=True) / counts[:, None, None] * within[:, :, None]
     by_parameter = np.swapaxes(derivatives * np.tile(amplitudes, 2)[:, None, None, :], 1, 2)
     by_state = left.T[:, None, :] * shapes
     by_state = np.concatenate([by_state, np.zeros_like(by_state)], axis=2)
     sums = np.concatenate([by_parameter, np.broadcast_to(by_state, (len(drops), *by_state.shape))], axis=1)
-    sums = np.ascontiguousarray(sums.conj()).view(float)
+    sums = np.ascontiguousarray(sums.conj()).view(float) * roots[:, None, :, None]
 
-    by_name = np.zeros((len(drops), len(brought) + 1, len(shapes), samples))
+    by_name = np.zeros((len(brought) + 1, len(drops), samples, len(shapes)))
     for i, (drop, count) in enumerate(zip(drops, counts.tolist(), strict=True)):
-        by_name[i, -1, :, :count] = np.nan_to_num(fit.residuals[drop][:, ::every])
-    powers = _powers(poles * step, samples)
+        by_name[-1, i, :count] = np.nan_to_num(fit.residuals[drop][:, ::every]).T * roots[i]
+    response = _ModalResponse.of(poles, participation, shapes, direct, roots, step, samples)
     for name, own, forces in _unit_forces(model, neutral, motion, step):
         if name in brought:
-            response = _response(poles, participation[:, own], shapes, forces, step, powers)
-            response += direct[:, own] @ forces
-            by_name[:, brought.index(name)] += response
+            by_name[brought.index(name)] += response.to(own, forces)
     for i, count in enumerate(counts.tolist()):
-        by_name[i, ..., count:] = 0.0
+        by_name[:, i, count:] = 0.0
 
-    weights = np.array(
-        [
-            fit.weights * decay.usable * channel_rate_ratios(decay) * (decay.samples / count)
-            for decay, count in zip(decays, counts.tolist(), strict=True)
-        ]
-    )
-    products = _products(sums, basis, by_name, weights, samples / counts)
+    products = _products(sums, basis, by_name, counts)
     own_state = np.arange(by_parameter.shape[1], sums.shape[1])
     products[:, own_state, own_state] += initial_state_prior_std(len(force_rows), len(own_state)) ** -2.0
     # The initial state is eliminated.
@@ -168,39 +168,34 @@ def _of_drops(
     return information.sum(axis=0), gradient.sum(axis=0)
 
 
-def _products(sums: Real, basis: Real, sampled: Real, weights: Real, shares: Real) -> Real:
-    """Return the inner products of the readings of each drop, means subtracted, summed over the channels.
+def _products(sums: Real, basis: Real, sampled: Real, counts: Index) -> Real:
+    """Return the inner products of the weighted readings of each drop, means subtracted, summed over the channels.
 
     Parameters
     ----------
     sums
         Readings that are sums of the basis, shape (drop, sum, channel, basis).
     basis
-        Shape (drop, basis, time), without its mean over the samples of the drop.
+        Shape (drop, time, basis), without its mean over the samples of the drop.
     sampled
-        The others, zero beyond the end of each drop, shape (drop, sampled, channel, time).
-    weights
-        Shape (drop, channel).
-    shares
-        Of all samples over those of each drop, shape (drop,).
+        The others, zero beyond the end of each drop, shape (sampled, drop, time, channel).
+    counts
+        Samples of each drop, shape (drop,).
 
     Returns
     -------
     ndarray
         Shape (drop, sum + sampled, sum + sampled).
     """
-    flat = (len(sums), sums.shape[1], -1)
-    weighted = (weights[:, None, :, None] * sums).reshape(flat)
-    transposed = np.swapaxes(basis, 1, 2)
-    among_sums = weighted @ np.swapaxes((sums @ (basis @ transposed)[:, None]).reshape(flat), 1, 2)
-    drops, count, channels, samples = sampled.shape
-    met = sampled.reshape(drops, -1, samples) @ transposed
-    across = weighted @ np.swapaxes(met.reshape(drops, count, -1), 1, 2)
-    by_channel = np.swapaxes(sampled, 1, 2)
-    squares = by_channel @ np.swapaxes(by_channel, 2, 3)
-    sizes, means = samples * shares, by_channel.mean(axis=-1)
-    squares -= sizes[:, None, None, None] * means[..., :, None] * means[..., None, :]
-    among_sampled = (weights[:, None] @ squares.reshape(drops, channels, -1)).reshape(drops, count, count)
+    flat, drops = (len(sums), sums.shape[1], -1), len(sums)
+    rows = sums.reshape(flat)
+    among_sums = rows @ np.swapaxes((sums @ (np.swapaxes(basis, 1, 2) @ basis)[:, None]).reshape(flat), 1, 2)
+    with_one = np.concatenate([basis, np.ones((*basis.shape[:2], 1))], axis=2)
+    met = np.moveaxis(np.swapaxes(with_one, 1, 2) @ sampled, 0, 1)
+    across = rows @ np.swapaxes(np.swapaxes(met[:, :, :-1], 2, 3).reshape(drops, len(sampled), -1), 1, 2)
+    whole = np.swapaxes(sampled, 0, 1).reshape(drops, len(sampled), -1)
+    means = met[:, :, -1] / np.sqrt(counts)[:, None, None]
+    among_sampled = whole @ np.swapaxes(whole, 1, 2) - means @ np.swapaxes(means, 1, 2)
     above = np.concatenate([among_sums, across], axis=2)
     below = np.concatenate([np.swapaxes(across, 1, 2), among_sampled], axis=2)
     return np.concatenate([above, below], axis=1)
@@ -225,47 +220,97 @@ def _unit_forces(
         for of_elements, forces in zip(positions, by_parameter, strict=True):
             for position in np.unique(of_elements).tolist() if forces.any() else ():
                 own = np.flatnonzero(of_elements == position)
-                by_drop = forces[:, own].reshape(*travel.shape[:2], len(own))
-                yield model.names[position], at[own].tolist(), np.ascontiguousarray(np.swapaxes(by_drop, 1, 2))
+                yield model.names[position], at[own].tolist(), forces[:, own].reshape(*travel.shape[:2], len(own))
 
 
-def _response(
-    poles: Complex, participation: Complex, shapes: Complex, forces: Real, step: float, powers: tuple[Complex, Complex]
-) -> Real:
-    """Return the response of the channels to forces that run straight between samples, shape (drop, channel, time)."""
-    held = np.expm1(poles * step) / poles
-    rising = (held / step - 1) / poles
-    before = np.zeros_like(forces)
-    before[..., 1:] = forces[..., :-1]
-    both = np.concatenate([forces, before], axis=1)
-    weights = np.hstack([participation * rising[:, None], participation * (held - rising)[:, None]])
-    # As products of real matrices: one of a complex matrix with a real one is made sample by sample.
-    drive = np.empty((len(forces), len(poles), both.shape[-1]), dtype=np.complex128)
-    drive.real, drive.imag = weights.real @ both, weights.imag @ both
-    modal = _accumulated(drive, np.exp(poles * step), powers)
-    return np.asarray(shapes.real @ modal.real - shapes.imag @ modal.imag, dtype=np.float64)
+@dataclass(frozen=True, eq=False)
+class _ModalResponse:
+    """Response of weighted readings to forces that run straight between samples, by one filter for each mode.
 
+    With the force f a mode is g + r f, where g(k) = z g(k-1) + v f(k-1).
 
-def _powers(exponent: Complex, samples: int) -> tuple[Complex, Complex]:
-    """Return e^{λk} and its inverse for as many samples as numbers hold both, each of shape (mode, time)."""
-    length = min(samples, max(int(_LARGEST_POWER / np.abs(exponent.real).max()), 1))
-    powers, inverse = (np.ascontiguousarray(exponentials(way, length).T) for way in (exponent, -exponent))
-    return powers, inverse
-
-
-def _accumulated(drive: Complex, turn: Complex, powers: tuple[Complex, Complex]) -> Complex:
-    """Return y of y(k) = z y(k-1) + d(k), from d of shape (drop, mode, time), z of shape (mode,), its powers and their inverse.
-
-    That is z^k times the sum of d(i)/z^i up to k, over as many samples as there are powers.
+    Attributes
+    ----------
+    drive
+        v of every row, real and imaginary parts beside each other, shape (row, 2 mode).
+    readings
+        Of g, likewise, shape (drop, 2 mode, channel).
+    direct
+        Readings of the forces themselves, shape (drop, row, channel).
+    turn
+        z, shape (mode,).
+    growth, inverse
+        z^k, and its inverse, for as many samples as numbers hold both, shape (time, mode).
+    buffer
+        Written anew for every force, shape (drop, time, 2 mode).
     """
-    growth, inverse = powers
-    parts, last = [], np.zeros(drive.shape[:2], dtype=np.complex128)
-    for begin in range(0, drive.shape[-1], growth.shape[1]):
-        part = drive[..., begin : begin + growth.shape[1]]
-        part = part * inverse[:, : part.shape[-1]]
-        part[..., 0] += turn * last
-        np.cumsum(part, axis=-1, out=part)
-        part *= growth[:, : part.shape[-1]]
-        parts.append(part)
-        last = part[..., -1]
-    return parts[0] if len(parts) == 1 else np.concatenate(parts, axis=-1)
+
+    drive: Real
+    readings: Real
+    direct: Real
+    turn: Complex
+    growth: Complex
+    inverse: Complex
+    buffer: Real
+
+    @classmethod
+    def of(
+        cls,
+        poles: Complex,
+        participation: Complex,
+        shapes: Complex,
+        direct: Real,
+        roots: Real,
+        step: float,
+        samples: int,
+    ) -> _ModalResponse:
+        """Return the response of modes.
+
+        Parameters
+        ----------
+        poles
+            1/s, shape (mode,).
+        participation
+            Of the force of each row in each mode, shape (mode, row).
+        shapes
+            Readings of the modes, shape (channel, mode).
+        direct
+            Readings of the forces, shape (channel, row).
+        roots
+            Square roots of the weights of readings, shape (drop, channel).
+        step
+            s.
+        samples
+            Of the longest drop.
+        """
+        held = np.expm1(poles * step) / poles
+        rising = (held / step - 1) / poles
+        z = np.exp(poles * step)
+        drive = ((z * rising + held - rising)[:, None] * participation).T
+        at_once = direct + (shapes @ (rising[:, None] * participation)).real
+        length = min(samples, max(int(_LARGEST_POWER / np.abs(poles.real * step).max()), 1))
+        return cls(
+            np.ascontiguousarray(drive).view(float),
+            np.ascontiguousarray(shapes.conj()).view(float).T * roots[:, None],
+            at_once.T * roots[:, None],
+            z,
+            exponentials(poles * step, length),
+            exponentials(-poles * step, length),
+            np.empty((len(roots), samples, 2 * len(poles))),
+        )
+
+    def to(self, rows: list[int], forces: Real) -> Real:
+        """Return the response to the forces of some rows, shape (drop, time, row); shape (drop, time, channel)."""
+        response: Real = forces @ self.direct[:, rows]
+        drive = np.matmul(forces, self.drive[rows], out=self.buffer).view(np.complex128)
+        # The sum of d(i) z^(k-i) up to k is z^k times that of d(i)/z^i, over as many samples as there are powers.
+        length = len(self.growth)
+        for begin in range(0, drive.shape[1], length):
+            part = drive[:, begin : begin + length]
+            part *= self.inverse[: part.shape[1]]
+            if begin:
+                part[:, 0] += self.turn * drive[:, begin - 1]
+            np.cumsum(part, axis=1, out=part)
+            part *= self.growth[: part.shape[1]]
+        response[:, 1:] += drive.view(float)[:, :-1] @ self.readings
+        return response

@@ -54,7 +54,8 @@ class Coordinates:
         return cls(names, np.array([_reference(name, typical) for name in names]))
 
     @cached_property
-    def _logarithmic(self) -> NDArray[np.bool_]:
+    def is_logarithmic(self) -> NDArray[np.bool_]:
+        """Which parameters are fitted by their logarithms, shape (parameter,)."""
         return np.array([parameter_of(name).positive for name in self.names])
 
     @cached_property
@@ -64,7 +65,7 @@ class Coordinates:
     def values(self, u: Real) -> Real:
         """Parameter values, SI, at coordinates."""
         values = self.references * u
-        values[self._logarithmic] = np.exp(u[self._logarithmic])
+        values[self.is_logarithmic] = np.exp(u[self.is_logarithmic])
         return values
 
     def from_parameters(self, values: Mapping[str, float]) -> Real:
@@ -73,12 +74,12 @@ class Coordinates:
 
     def derivatives(self, u: Real) -> Real:
         """Return the derivative of each value by its coordinate, shape (parameter,)."""
-        return np.where(self._logarithmic, self.values(u), self.references)
+        return np.where(self.is_logarithmic, self.values(u), self.references)
 
     def from_values(self, values: Real) -> Real:
         """Coordinates of parameter values, SI."""
         u = values / self.references
-        u[self._logarithmic] = np.log(values[self._logarithmic])
+        u[self.is_logarithmic] = np.log(values[self.is_logarithmic])
         return u
 
     def extrapolated(self, u: Real, step: Real) -> Real:
@@ -188,7 +189,8 @@ class PriorsAndConstraints:
         names, known, sizes = self._chosen[exact]
         if not names:
             return np.zeros(0), np.zeros((0, len(u)))
-        values, derivatives = self.coordinates.values(u), self.coordinates.derivatives(u)
+        values = self.coordinates.values(u)
+        derivatives = np.where(self.coordinates.is_logarithmic, values, self.coordinates.references)
         found = [evaluate_quantity(name, self.coordinates.names, values) for name in names]
         rows = np.array([gradient for _, gradient in found]) * derivatives
         sizes = np.where(sizes > 0, sizes, np.linalg.norm(rows, axis=1))  # nothing is a part of zero

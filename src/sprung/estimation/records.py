@@ -118,21 +118,17 @@ class RecordBatch:
         most
             Records at the most; those much shorter than the others are left out.
         """
-        step = float(self.step[group])
-        own = np.arange(len(self.group))[self.members(group)]
-        long = own[2 * self.samples[own] >= self.samples[own].max()][:most].tolist()
-        every = max(int(1 / (step * rate)), 1)
-        samples = min(int(longest / step), int(self.samples[long].min()))
-        cut = [split_into_blocks(self.record(i)[:, :samples:every]) for i in long]
+        long, records, step = self.thinned(group, rate, longest, most)
+        blocks, samples = split_into_blocks(list(records)), np.full(len(long), records.shape[2])
         return RecordBatch(
             positions=self.positions[long],
             group=np.zeros(len(long), dtype=np.int64),
             load=self.load[group : group + 1],
-            step=np.array([every * step]),
-            samples=np.full(len(long), -(-samples // every)),
+            step=np.array([step]),
+            samples=samples,
             channel_weights=self.channel_weights,
-            energy=np.array([np.einsum("bct,bct->c", record, record) for record in cut]),
-            blocks=np.concatenate(cut),
+            energy=_energy(blocks, samples),
+            blocks=blocks,
             clock_design=self.clock_design[:, :0],
             expected_delays=self.expected_delays[long, :0],
             delay_std=self.delay_std[long, :0],
@@ -142,9 +138,24 @@ class RecordBatch:
             flight_information=self.flight_information[long],
         )
 
-    def shortened(self, duration: float) -> RecordBatch:
-        """Return decimated records cut to a duration, s."""
-        return self.decimated(0, 1.0 / float(self.step[0]), duration, len(self.samples))
+    def thinned(self, group: int, rate: float, longest: float, most: int) -> tuple[list[int], Real, float]:
+        """Return the positions of records of a group, samples of them as of `decimated`, and the interval of these, s.
+
+        Returns
+        -------
+        positions
+            In the batch.
+        records
+            Shape (record, channel, time).
+        step
+            s.
+        """
+        step = float(self.step[group])
+        own = np.arange(len(self.group))[self.members(group)]
+        long = own[2 * self.samples[own] >= self.samples[own].max()][:most].tolist()
+        every = max(int(1 / (step * rate)), 1)
+        samples = min(int(longest / step), int(self.samples[long].min()))
+        return long, np.array([self.record(i)[:, :samples:every] for i in long]), every * step
 
     def record(self, index: int) -> Real:
         """Centred record, shape (channel, time)."""
@@ -225,17 +236,18 @@ def _batch(positions: Sequence[int], decays: Sequence[FreeDecay], names: Sequenc
     kinds = sorted(set(kind.values()))
     positions = sorted(positions, key=lambda i: kinds.index(kind[i]))
     own = [decays[i] for i in positions]
-    cut = [split_into_blocks(decay.values, decay.usable) for decay in own]
+    blocks = split_into_blocks([decay.values for decay in own], first.usable)
+    samples = np.array([decay.samples for decay in own])
     flight_values, flight_gradient, flight_information = _flights(own, names)
     return RecordBatch(
         positions=np.array(positions),
         group=np.array([kinds.index(kind[i]) for i in positions]),
         load=np.array([load for load, *_ in kinds]),
         step=np.array([step for _, step, _ in kinds]),
-        samples=np.array([decay.samples for decay in own]),
+        samples=samples,
         channel_weights=first.usable * channel_rate_ratios(first),
-        energy=np.array([np.einsum("bct,bct->c", record, record) for record in cut]),
-        blocks=np.concatenate(cut),
+        energy=_energy(blocks, samples),
+        blocks=blocks,
         clock_design=_clock_design(first),
         expected_delays=np.array([[clock.delay for clock in decay.clocks] for decay in own]),
         delay_std=np.array([[clock.delay_std for clock in decay.clocks] for decay in own]),
@@ -244,6 +256,12 @@ def _batch(positions: Sequence[int], decays: Sequence[FreeDecay], names: Sequenc
         flight_gradient=flight_gradient,
         flight_information=flight_information,
     )
+
+
+def _energy(blocks: Real, samples: Index) -> Real:
+    """Return the sum of squares of each record by its blocks, shape (record, channel)."""
+    squares, counts = np.einsum("bct,bct->bc", blocks, blocks), -(-samples // BLOCK_LENGTH)
+    return np.asarray(np.add.reduceat(squares, np.cumsum(counts) - counts, axis=0))
 
 
 def _flights(decays: Sequence[FreeDecay], names: Sequence[str]) -> tuple[Real, Real, Real]:

@@ -144,8 +144,9 @@ def _lifted_scores(fit: FitResult, sensors: Sequence[Sensor]) -> Iterator[FaultS
     uncertainty s is v s² / (s² - v), and twice the log-likelihood gains the square of its distance from what is stated over the
     variance of that distance.
     """
-    lifts = lift_priors(fit, [name for name in fit.names if is_of_sensor(name)])
-    for sensor in sensors:
+    uncertain = [name for name in fit.names if is_of_sensor(name)]
+    lifts = lift_priors(fit, uncertain) if uncertain else {}
+    for sensor in sensors if lifts else ():
         for quantity, (kind, axis) in _KINDS.items():
             if (lifted := lifts.get(sensor_unknown(quantity, sensor.channel))) is not None:
                 yield FaultScore(kind, sensor.channel, axis, 0, *lifted, uncertainties=len(lifts))

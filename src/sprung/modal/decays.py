@@ -56,7 +56,7 @@ class Decays:
             rate=rate,
             samples=np.array([record.shape[1] for record in records]),
             energy=np.array([np.einsum("ct,ct->c", record, record) for record in values]),
-            padded_blocks=np.concatenate([split_into_blocks(record) for record in records]),
+            padded_blocks=split_into_blocks(records),
         )
 
     @cached_property

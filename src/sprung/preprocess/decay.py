@@ -119,6 +119,12 @@ class FreeDecay:
         return usable
 
     @cached_property
+    def energy(self) -> NDArray[np.float64]:
+        """Sum of squares about the mean of each channel, (m/s²)², shape (channel,); NaN in channels that are left out."""
+        energy: NDArray[np.float64] = self.values.var(axis=1) * self.samples
+        return energy
+
+    @cached_property
     def resolution(self) -> NDArray[np.float64]:
         """Resolution of each channel as it was recorded, m/s², shape (channel,); 0 in channels that are left out."""
         unknown = np.isnan(self.rest.step)

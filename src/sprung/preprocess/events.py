@@ -105,5 +105,5 @@ def mark_samples(code: str, samples: NDArray[np.bool_]) -> tuple[MarkedSamples, 
     samples
         Shape (channel, time).
     """
-    some = np.flatnonzero(np.asarray(samples.any(axis=1))).tolist()
+    some = np.flatnonzero(np.asarray(samples.any(axis=1))).tolist() if samples.any() else ()
     return tuple(MarkedSamples(code, channel, np.flatnonzero(samples[channel])) for channel in some)

@@ -83,7 +83,6 @@ def _has_same_samples(first: Recording, second: Recording) -> bool:
     if first.values.shape != second.values.shape:
         return False
     # A look at the last samples is enough for almost all pairs.
-    return all(
-        np.array_equal(first.values[:, part], second.values[:, part], equal_nan=True)
-        for part in (slice(-1, None), slice(None))
-    )
+    if first.values[:, -1:].tobytes() != second.values[:, -1:].tobytes():
+        return False
+    return np.array_equal(first.values, second.values, equal_nan=True)

@@ -64,7 +64,8 @@ def measure_fall(moved: Real, rate: float, release: int, level: Real) -> tuple[R
     onset = fall[:, : max(int(2 * BLOW * rate), 1)].mean(axis=1)
     over = (np.abs(level) < STANDARD_GRAVITY / 2) & (onset > STANDARD_GRAVITY)
     fall = np.where(over[:, None], -fall, fall)
-    smooth = np.nan_to_num(uniform_filter1d(fall, max(round(BLOW * rate), 1), axis=1, mode="nearest"))
+    smooth = uniform_filter1d(fall, max(round(BLOW * rate), 1), axis=1, mode="nearest")
+    smooth[np.isnan(smooth)] = 0.0
     # What moves at first may be a hand at the blocks.
     deepest = smooth[int(np.argmin(smooth.min(axis=1)))]
     begin = int(np.argmax(deepest <= 0.25 * deepest.min()))
@@ -93,8 +94,8 @@ def detect_dropped_channels(level: Real, onset: Real, depth: Real, speed: Real, 
     tuple of int
         Positions of the channels; none where no wheel with a sensor fell.
     """
-    depth, speed, onset = (np.where(wheels, np.nan_to_num(feature), 0.0) for feature in (depth, speed, onset))
-    over = (np.abs(np.nan_to_num(level)) < STANDARD_GRAVITY / 2) & (onset > 0)  # an AC-coupled sensor may point down
+    depth, speed, onset = np.where(wheels & ~np.isnan(onset), (depth, speed, onset), 0.0)
+    over = ~(np.abs(level) >= STANDARD_GRAVITY / 2) & (onset > 0)  # an AC-coupled sensor may point down
     at_once = depth * np.maximum(np.where(over, onset, -onset), 0.0)
     falls = (depth > _DEEP * depth.max()) | (at_once > _AT_ONCE * at_once.max())
     any_fell = bool(((depth > STANDARD_GRAVITY) & (speed > WHEEL_SPEED)).any())

@@ -126,11 +126,13 @@ def _recognise_units(
     levels: Real, reads: Flags, recordings: Sequence[Recording], sensors: Sequence[Sensor]
 ) -> list[int]:
     """Return for each channel the unit in which it reads gravity; the stated one where none, or no other, is beyond doubt."""
-    best = []
-    for channel in range(len(sensors)):
+    factors = np.array([factor for factor, _, _ in _UNITS])
+    best = [0] * len(sensors)
+    for channel in np.flatnonzero(reads).tolist():
         own = np.abs(levels[~np.isnan(levels[:, channel]), channel])
-        off = [float(np.abs(own * factor - 1).max()) if reads[channel] else np.inf for factor, _, _ in _UNITS]
-        best.append(0 if off[0] < _NEAR or min(off) >= _NEAR else int(np.argmin(off)))
+        off = np.abs(own[:, None] * factors - 1).max(axis=0)
+        if off[0] >= _NEAR > off.min():
+            best[channel] = int(np.argmin(off))
     if not any(best):
         return best
     peaks = _mean_ranges(recordings)

@@ -123,11 +123,11 @@ def _detect(values: Real, rate: float, peak_over_noise: float, active: Flags | N
     if values.shape[1] < 4 * width:
         return None
     first = values[:, : max(width, _FEW)]
-    level = np.median(first, axis=1, keepdims=True)
+    level = median_by_channel(first)[:, None]
     # A coarse sensor at rest may show one step, or none at all: its noise is then no less than its resolution's.
     step = resolution(values)
     spread = np.max(
-        [1.4826 * np.median(np.abs(first - level), axis=1), 0.6 * first.std(axis=1), step / np.sqrt(12)], axis=0
+        [1.4826 * median_by_channel(np.abs(first - level)), 0.6 * first.std(axis=1), step / np.sqrt(12)], axis=0
     )[:, None]
     deviation = np.abs(values - level)
     peak = np.maximum(deviation.max(axis=1, keepdims=True), 1e-300)
@@ -176,9 +176,25 @@ def resolution(values: Real) -> Real:
     taken = np.count_nonzero(steps > 0, axis=1)
     # In the order of size the steps of zero come first.
     rank = steps.shape[1] - taken + (_FILLED_IN * taken).astype(int)
+    some = np.flatnonzero(taken)
     smallest = np.zeros(len(values))
-    for place in set(rank[taken > 0].tolist()):
-        rows = np.flatnonzero((taken > 0) & (rank == place))
-        # NumPy selects two places of an order ten times as fast as one.
-        smallest[rows] = np.partition(steps[rows], (place, -1), axis=1)[:, place]
+    smallest[some] = np.sort(steps[some], axis=1)[np.arange(len(some)), rank[some]]
     return smallest
+
+
+def median_by_channel(values: Real) -> Real:
+    """Return the median of each channel, several times as fast as NumPy selects it: it sorts by vectors.
+
+    Parameters
+    ----------
+    values
+        Shape (channel, time), any unit; NaN throughout in channels that are left out.
+
+    Returns
+    -------
+    ndarray
+        Unit of the values, shape (channel,).
+    """
+    ordered, middle = np.sort(values, axis=1), values.shape[1] // 2
+    median: Real = ordered[:, middle] if values.shape[1] % 2 else (ordered[:, middle - 1] + ordered[:, middle]) / 2
+    return median

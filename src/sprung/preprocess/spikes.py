@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from sprung.campaign import MAX_MISSING, Recording, fill_short_gaps
 from sprung.errors import Fault
-from sprung.preprocess.release import resolution
+from sprung.preprocess.release import median_by_channel, resolution
 
 Real = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -124,7 +124,7 @@ def detect_spikes(values: Real, rate: float, height: float = HEIGHT) -> Flags:
         return found
     steps = np.diff(values, axis=1)
     sizes = np.abs(steps)
-    least = height * _USUAL * np.median(sizes, axis=1)
+    least = height * _USUAL * median_by_channel(sizes)
     channel, before, width = _opposite_steps(steps, sizes > least[:, None], longest)
     if not channel.size:
         return found
@@ -133,7 +133,8 @@ def detect_spikes(values: Real, rate: float, height: float = HEIGHT) -> Flags:
     exceeds = np.maximum(inside.min(axis=1) - np.maximum(left, right), np.minimum(left, right) - inside.max(axis=1))
     # Beyond the ends nothing is smooth. The flanks are the run's own.
     beside = max(round(_AROUND * rate), _FEWEST)
-    padded = np.pad(sizes, ((0, 0), (beside, beside)), constant_values=np.inf)
+    padded = np.full((len(sizes), sizes.shape[1] + 2 * beside), np.inf)
+    padded[:, beside:-beside] = sizes
     flank = before[:, None] + np.arange(beside)
     around = padded[channel[:, None], np.concatenate([flank, flank + beside + width[:, None] + 1], axis=1)]
     allowed = [

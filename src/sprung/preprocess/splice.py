@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from sprung.campaign import Recording
 from sprung.errors import Fault
+from sprung.preprocess.release import median_by_channel
 from sprung.uncertainty import KnownValue
 
 Real = NDArray[np.float64]
@@ -89,17 +90,11 @@ def find_splice(values: Real, rate: float) -> int | None:
     """
     usable = values[~np.isnan(values).any(axis=1)]
     shortest, near = round(_SHORTEST * rate), max(round(_TOGETHER * rate), 2)
-    if not len(usable) or usable.shape[1] < 4 * shortest:
+    if not len(usable) or usable.shape[1] < 4 * shortest or not _may_be_spliced(usable[[0, -1]], shortest, near):
         return None
     signed = np.diff(usable, 2, axis=1)
-    differences = np.abs(signed)
-    size = np.log(np.maximum(differences, 0.1 * np.median(differences, axis=1, keepdims=True) + np.finfo(float).tiny))
-    count = np.arange(1, size.shape[1] + 1)
-    before = np.cumsum(size, axis=1)
-    total, last = before[:, -1:], size.shape[1]
-    between = before**2 / count + (total - before) ** 2 / np.maximum(last - count, 1)
-    inside = slice(shortest, last - shortest)
-    at = np.argmax(between[:, inside], axis=1) + shortest
+    differences, last = np.abs(signed), signed.shape[1]
+    at = _changes(signed, shortest)
     place = int(np.median(at))
     if np.abs(at - place).max() > near:
         return None
@@ -121,6 +116,23 @@ def find_splice(values: Real, rate: float) -> int | None:
     other = differences[:, place - near : place + near] > np.exp((joint + after) / 2)[:, None]
     crossed = np.flatnonzero((other if rises else ~other).any(axis=0))
     return int(place - near + (crossed[0] + 2 if rises else crossed[0]))
+
+
+def _may_be_spliced(two: Real, shortest: int, near: int) -> bool:
+    """Whether two channels, shape (channel, time), change together: most recordings need no look at the others."""
+    return bool(np.ptp(_changes(np.diff(two, 2, axis=1), shortest)) <= 2 * near)
+
+
+def _changes(signed: Real, shortest: int) -> NDArray[np.int64]:
+    """Return where the noise of each channel changes, from its second differences, shape (channel, time)."""
+    differences = np.abs(signed)
+    least = 0.1 * median_by_channel(differences)[:, None] + np.finfo(float).tiny
+    before = np.cumsum(np.log(np.maximum(differences, least)), axis=1)
+    last = signed.shape[1]
+    count = np.arange(1, last + 1)
+    between = before**2 / count + (before[:, -1:] - before) ** 2 / np.maximum(last - count, 1)
+    places: NDArray[np.int64] = np.argmax(between[:, shortest : last - shortest], axis=1) + shortest
+    return places
 
 
 def _estimate_delay(spliced: Sequence[tuple[Recording, int]]) -> KnownValue:

@@ -20,7 +20,7 @@ from sprung.selection.starts import fit_structure, start_values, thinned
 from sprung.selection.stepwise import select_linear_terms
 from sprung.selection.structure import ModelStructure
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import EMPTY, FULL, Heights, body_sinking, second_order_readings
+from sprung.vehicle import EMPTY, FULL, Heights, body_sinking, coordinates, second_order_readings
 
 Real = NDArray[np.float64]
 
@@ -42,6 +42,9 @@ _FIRST_ITERATIONS = 2
 
 _NEAR_BY = 100.0
 """Expected gain in twice the log-likelihood, the distance in standard errors squared, up to which that is quadratic."""
+
+_FEW, _BODY = 4, 2 * np.pi * 1.5
+"""Drops that are enough for that, and usual own frequency of the body, 1/s."""
 
 _Assumption = tuple[bool, bool]
 """Of a vehicle under a load: whether loads are level with the centre of gravity, where no heights are stated; and whether the
@@ -76,7 +79,7 @@ def select_finite_rotation(search: ModelSearch, plain: ModelStructure) -> ModelS
         return search
     recorded = search.decays
     plainest, *others = _ASSUMPTIONS[:2] if structure.campaign.heights.has_effect else _ASSUMPTIONS
-    if _loses_much(search, plainest):
+    if _loses_much(search, plainest, _drops_that_turn_most(search.fit)):
         return search
     first, assumption = _corrected(search, recorded, plainest, passes=1, most=_FIRST_ITERATIONS), plainest
     if first.fit.loglikelihood > search.fit.loglikelihood:
@@ -94,18 +97,28 @@ def select_finite_rotation(search: ModelSearch, plain: ModelStructure) -> ModelS
     return turned if turned.gain_over(search) > search.required_of_switch else search
 
 
-def _loses_much(search: ModelSearch, assumption: _Assumption) -> bool:
+def _drops_that_turn_most(fit: FitResult) -> list[int]:
+    """Return the positions of the drops in which the body turns furthest: effects of the second order go with its square."""
+    every, states = coordinates(fit.names), fit.states
+    own = np.array([every.index("theta"), every.index("phi")])
+    angles, rates = states[:, own], states[:, len(every) + own]
+    turned = (angles**2 + (rates / _BODY) ** 2).sum(axis=1)
+    return sorted(np.argsort(-turned, kind="stable")[:_FEW].tolist())
+
+
+def _loses_much(search: ModelSearch, assumption: _Assumption, drops: Sequence[int]) -> bool:
     """Whether the correction loses so much in a part of the samples that it cannot gain in all of them.
 
     As far as the likelihood is quadratic, what the parameters may gain back follows without any fit.
     """
-    thin, part = thinned(search.decays, _RATE, np.inf)
+    decays = [search.decays[drop] for drop in drops]
+    thin, part = thinned(decays, _RATE, np.inf)
     if part > _PART:
         return False
     fit, structure = search.fit, _with_geometry(search.structure, search.fit.parameters, assumption)
     motions = [
         fit.motion(drop, 0, decay.samples)[:, :: round(decay.rate / one.rate)]
-        for drop, (decay, one) in enumerate(zip(search.decays, thin, strict=True))
+        for drop, decay, one in zip(drops, decays, thin, strict=True)
     ]
     corrected = _without_second_order(structure, fit, thin, motions)
     (before, _), (after, gain) = expected_ends(fit, (thin, corrected))

@@ -14,14 +14,13 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import lfilter
 
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import kinematics
 from sprung.vehicle.heights import Heights
 from sprung.vehicle.layout import WHEELS, LinearLaw, Tracks, Wheel, half_distances, wheelbase_of
 from sprung.vehicle.load import Load
-from sprung.vehicle.model import LinearModel, Rows, highest_derivatives
+from sprung.vehicle.model import LinearModel, Matrices, Rows, highest_derivatives
 from sprung.vehicle.readout import sensor_rows
 from sprung.vehicle.sensor import Sensor
 
@@ -100,46 +99,59 @@ def second_order_readings(
     """
     motion, ends = np.hstack(motions), np.cumsum([one.shape[1] for one in motions])[:-1]
     matrices = model.matrices(values)
-    n, m, A = len(matrices.M), model.massive, matrices.state
+    n, m = len(matrices.M), model.massive
+    A, leading_inverse = matrices.state_and_leading_inverse(m)
     # Where no mass is, the velocity follows from the displacements, and there is no acceleration to be known.
     rates = A @ motion
     signals = np.stack([motion[:n], rates[:n], np.vstack([rates[n:], np.zeros_like(motion[: n - m])])])
+    springs, dampers = -_travels(model, tracks, "spring", values), -_travels(model, tracks, "damper", values)
+    moved = model.unconstrained_motion(values)
+    # Forward displacement of the centre of gravity per pitch angle, and the sideways one per roll angle, m/rad.
+    drift = float(moved[0, _PITCH]), float(moved[1, _ROLL])
+    half = _half_square(signals)
     forces = [
-        _suspension_forces(model, tracks, heights, values, signals),
-        _inertia_forces(model, tracks, heights, load, values, signals),
+        _suspension_forces(model, heights, values, matrices, springs, dampers, signals, half),
+        _inertia_forces(model, heights, load, values, springs, drift, signals, half),
     ]
     directions = np.hstack([columns for columns, _ in forces])
     inputs = np.zeros((len(A), directions.shape[1]))
-    inputs[highest_derivatives(n, m)] = np.linalg.solve(matrices.leading, directions)
+    inputs[highest_derivatives(n, m)] = leading_inverse @ directions
     rows = np.zeros((len(sensors), len(A)))
     # The others read a motion, not the rate of a velocity: to them the second order is of no account.
     accelerometers = np.array([sensor.reads_gravity for sensor in sensors])[:, None]
     wheelbase = wheelbase_of(model.names, values.tolist())
     rows[:, n:] = accelerometers * sensor_rows(sensors, model.names, wheelbase).at(values)[:, :m]
     readings = _forced_rates(A, inputs, np.vstack([series for _, series in forces]), rows, step, ends)
-    turning = accelerometers * _sensor_rotation(model, heights, sensors, values, signals)
+    turning = accelerometers * _sensor_rotation(heights, sensors, drift, signals, half)
     return np.split(readings + turning, ends, axis=1)
 
 
 def _sensor_rotation(
-    model: LinearModel, heights: Heights, sensors: Sequence[Sensor], values: Array, signals: Array
+    heights: Heights, sensors: Sequence[Sensor], drift: tuple[float, float], signals: Array, half: Array
 ) -> Array:
     """Return what sensors read because they turn with the body: specific force along its axis, and centripetal acceleration."""
     pitch, roll = signals[:, _PITCH], signals[:, _ROLL]
-    forward, sideways = _unconstrained_per_angle(model, values)
+    forward, sideways = drift
     arms = [
         (heights.wheel_arms[1], 0.0) if sensor.position is None else (0.0, -_above_centre(heights, sensor.position[2]))
         for sensor in sensors
     ]
     swung = pitch[_VALUE] * pitch[_SECOND], roll[_VALUE] * roll[_SECOND]
     centripetal = pitch[_RATE] ** 2 + roll[_RATE] ** 2
-    of_all = forward * swung[0] - sideways * swung[1] - STANDARD_GRAVITY * _half_square(signals)[_VALUE]
+    of_all = forward * swung[0] - sideways * swung[1] - STANDARD_GRAVITY * half[_VALUE]
     readings: Array = of_all + np.array(arms) @ np.vstack([swung[0] + swung[1], centripetal])
     return readings
 
 
 def _suspension_forces(
-    model: LinearModel, tracks: Tracks, heights: Heights, values: Array, signals: Array
+    model: LinearModel,
+    heights: Heights,
+    values: Array,
+    matrices: Matrices,
+    springs: Array,
+    dampers: Array,
+    signals: Array,
+    half: Array,
 ) -> tuple[Array, Array]:
     """Return the second-order generalised forces of springs and dampers: directions times series.
 
@@ -154,20 +166,24 @@ def _suspension_forces(
         Shape (direction, time).
     """
     arm = heights.wheel_arms[1]
-    springs, dampers = -_travels(model, tracks, "spring", values), -_travels(model, tracks, "damper", values)
-    matrices = model.matrices(values)
     rates = _by_axle(model, "k_s", values)
     static = rates * -(springs @ matrices.deflection(matrices.M @ model.heave * STANDARD_GRAVITY))
     by_spring = -(static + rates * arm) @ springs
     by_damper = -arm * _by_axle(model, "c_s", values) @ dampers
-    half = _half_square(signals)
     force = by_spring @ signals[_VALUE] + by_damper @ signals[_RATE]
     directions = np.column_stack([by_spring, by_damper, *_angles(model)])
     return directions, np.vstack([half[_VALUE], half[_RATE], force * signals[_VALUE][[_PITCH, _ROLL]]])
 
 
 def _inertia_forces(
-    model: LinearModel, tracks: Tracks, heights: Heights, load: Load, values: Array, signals: Array
+    model: LinearModel,
+    heights: Heights,
+    load: Load,
+    values: Array,
+    springs: Array,
+    drift: tuple[float, float],
+    signals: Array,
+    half: Array,
 ) -> tuple[Array, Array]:
     """Return the second-order generalised inertia forces of wheels and items of the load, as `_suspension_forces` does.
 
@@ -178,7 +194,7 @@ def _inertia_forces(
     if not heights.has_effect:
         return np.zeros((len(by_pitch), 0)), np.zeros((0, signals.shape[2]))
     pitch, roll = signals[:, _PITCH], signals[:, _ROLL]
-    forward, sideways = _unconstrained_per_angle(model, values)
+    forward, sideways = drift
     own = dict(zip(model.names, values.tolist(), strict=True))
     items = [(one.mass, *one.position) for one in load.items if one.position is not None]
     mass, x, y, z = np.array(items).reshape(-1, 4).T
@@ -186,7 +202,7 @@ def _inertia_forces(
     height = np.array([_above_centre(heights, one) for one in z.tolist()])
     # Wheels: u₁ = arm times the angle along both axes, u₂ with their travel.
     arm, masses = heights.wheel_arms[1], _by_axle(model, "m_u", values)
-    of_wheels = masses @ -_travels(model, tracks, "spring", values)
+    of_wheels = masses @ springs
     distances = masses @ np.array([own["a"] if station[0] == "f" else -own["b"] for station in WHEELS])
     q, ahead, aside = of_wheels @ signals, forward + arm, sideways - arm
     # Items: of their weights on the body, and of their places.
@@ -198,14 +214,14 @@ def _inertia_forces(
 
     def by_angle(angle: Array, arm: float, squared: float) -> Array:
         """Return the moment about an axis of what moves along the other one as the body turns."""
-        twice = angle[_SECOND] * angle[_VALUE] + 0.5 * _product(angle, angle)[_SECOND]
-        moved = angle[_SECOND] * q[_VALUE] + _product(q, angle)[_SECOND]
+        twice = 2 * angle[_SECOND] * angle[_VALUE] + angle[_RATE] ** 2
+        moved = angle[_SECOND] * q[_VALUE] + _second_of_product(q, angle)
         moment: Array = tilting * angle[_VALUE] + squared * twice + arm * moved
         return moment
 
     directions = np.column_stack([lifted, -ahead * of_wheels, aside * of_wheels, by_pitch, by_roll])
     series = [
-        _half_square(signals)[_SECOND],
+        half[_SECOND],
         pitch[_SECOND] * pitch[_VALUE],
         roll[_SECOND] * roll[_VALUE],
         by_angle(pitch, -ahead, along),
@@ -219,24 +235,17 @@ def _angles(model: LinearModel) -> Array:
     return np.eye(len(model.heave))[[_PITCH, _ROLL]]
 
 
-def _product(one: Array, other: Array) -> Array:
-    """Return the product of two signals, by Leibniz's rule."""
-    rate = one[_RATE] * other[_VALUE] + one[_VALUE] * other[_RATE]
-    second = one[_SECOND] * other[_VALUE] + 2 * one[_RATE] * other[_RATE] + one[_VALUE] * other[_SECOND]
-    return np.stack([one[_VALUE] * other[_VALUE], rate, second])
+def _second_of_product(one: Array, other: Array) -> Array:
+    """Return the second derivative of the product of two signals, by Leibniz's rule."""
+    second: Array = one[_SECOND] * other[_VALUE] + 2 * one[_RATE] * other[_RATE] + one[_VALUE] * other[_SECOND]
+    return second
 
 
 def _half_square(signals: Array) -> Array:
-    """Return half the sum of both squared angles."""
-    pitch, roll = signals[:, _PITCH], signals[:, _ROLL]
-    half: Array = 0.5 * (_product(pitch, pitch) + _product(roll, roll))
+    """Return half the sum of both squared angles, and its derivatives by time, shape (3, time)."""
+    value, rate, second = signals[:, [_PITCH, _ROLL]]
+    half: Array = np.stack([0.5 * (value * value), rate * value, second * value + rate * rate]).sum(axis=1)
     return half
-
-
-def _unconstrained_per_angle(model: LinearModel, values: Array) -> tuple[float, float]:
-    """Return the forward displacement of the centre of gravity per pitch angle and the sideways one per roll angle, m/rad."""
-    moved = model.unconstrained_motion(values)
-    return float(moved[0, _PITCH]), float(moved[1, _ROLL])
 
 
 def _above_centre(heights: Heights, height: float) -> float:
@@ -270,22 +279,25 @@ def _forced_rates(
     poles, vectors = np.linalg.eig(A)
     # A pole and its conjugate add the same real part twice.
     upper = np.imag(poles) >= 0
-    modal = (np.linalg.inv(vectors)[upper] @ inputs).astype(complex) @ series
+    weights = np.linalg.inv(vectors)[upper] @ inputs
+    modal = weights.real @ series + 1j * (weights.imag @ series)
     poles, output = poles[upper].astype(complex), (rows @ vectors[:, upper]).astype(complex)
     z = poles[:, None] * step
-    decay = np.exp(z[:, 0])
+    turn = np.exp(z)[:, :, None]
     # Weights of u at the beginning and at the end of a step: integrals of exp(λ (step - t)) times a linear function.
     z = np.where(np.abs(z) < _STILL, _STILL, z)
     before, after = step * (np.exp(z) * (z - 1) + 1) / z**2, step * (np.exp(z) - 1 - z) / z**2
-    states = np.zeros_like(modal)
-    states[:, 1:] = before * modal[:, :-1] + after * modal[:, 1:]
-    for row, factor in zip(states, decay.tolist(), strict=True):
-        row[:] = lfilter([1.0], [1.0, -factor], row)
-    # What goes on from one drop into the next one decays there freely.
-    bounds = list(pairwise([0, *ends, states.shape[1]]))
-    powers = np.exp(poles[:, None] * step * np.arange(max(end - begin for begin, end in bounds)))
-    for begin, end in bounds:
-        states[:, begin:end] -= states[:, begin, None] * powers[:, : end - begin]
+    bounds = list(pairwise([0, *ends, modal.shape[1]]))
+    longest = max(end - begin for begin, end in bounds)
+    apart = np.zeros((len(poles), len(bounds), longest), dtype=np.complex128)
+    for drop, (begin, end) in enumerate(bounds):
+        apart[:, drop, 1 : end - begin] = before * modal[:, begin : end - 1] + after * modal[:, begin + 1 : end]
+    # What is left of each step, over twice as many of them each time.
+    reach = 1
+    while reach < longest:
+        apart[..., reach:] += turn * apart[..., :-reach]
+        turn, reach = turn * turn, 2 * reach
+    states = np.hstack([apart[:, drop, : end - begin] for drop, (begin, end) in enumerate(bounds)])
     output *= poles * np.where(poles.imag > 0, 2.0, 1.0)
     forced: Array = output.real @ states.real - output.imag @ states.imag + rows @ inputs @ series
     return forced

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
@@ -18,6 +18,9 @@ from sprung.vehicle.layout import LinearLaw
 from sprung.vehicle.nuisances import parameter_of
 
 Array = NDArray[np.float64]
+
+_DENSE = 600
+"""Entries of all matrices up to which zeros among them are multiplied as well."""
 
 LINEAR_LAWS: tuple[LinearLaw, ...] = ("mass", "damper", "spring")
 """Laws of the elements in M, in C and in K."""
@@ -47,8 +50,19 @@ class Matrices(NamedTuple):
     @property
     def state(self) -> Array:
         """State matrix A of eq. (4), shape (..., n + m, n + m), for the state {X, Ẋ}."""
-        forces = np.concatenate([self.K, self.C[..., : self.massive]], axis=-1)
-        return state_matrix(-np.linalg.inv(self.leading) @ forces, self.massive)
+        return self.state_and_leading_inverse(self.massive)[0]
+
+    def state_and_leading_inverse(self, massive: int) -> tuple[Array, Array]:
+        """Return the state matrix and the inverse of L, shape (..., n, n).
+
+        Parameters
+        ----------
+        massive
+            Number of coordinates that move a mass.
+        """
+        inverse: Array = np.asarray(np.linalg.inv(self._leading(massive)), dtype=np.float64)
+        forces = np.concatenate([self.K, self.C[..., :massive]], axis=-1)
+        return state_matrix(-inverse @ forces, massive), inverse
 
     @property
     def massive(self) -> int:
@@ -58,7 +72,9 @@ class Matrices(NamedTuple):
     @property
     def leading(self) -> Array:
         """Coefficients of the highest derivatives, L, shape (..., n, n)."""
-        m = self.massive
+        return self._leading(self.massive)
+
+    def _leading(self, m: int) -> Array:
         return self.M if m == self.M.shape[-1] else np.concatenate([self.M[..., :m], self.C[..., m:]], axis=-1)
 
     def deflection(self, force: ArrayLike) -> Array:
@@ -144,15 +160,10 @@ class Rows:
         KeyError
             If a row depends on a parameter that is not listed.
         """
-        index = {name: i for i, name in enumerate(names, start=1)}
-        position = {coordinate: i for i, coordinate in enumerate((*coordinates(names), *further))}
-        affine = np.zeros((len(rows), len(position), 1 + len(names)))
-        for row, block in zip(rows, affine, strict=True):
-            for name, shape in (("", row.constant), *row.slopes.items()):
-                for coordinate, value in shape.items():
-                    # Rows of sensors and loads hold whatever the body may do, also what this vehicle's does not.
-                    if coordinate in position:
-                        block[position[coordinate], index[name] if name else 0] = value
+        every = (*coordinates(names), *further)
+        affine = np.zeros((len(rows), len(every), 1 + len(names)))
+        for number, coordinate, factor, value in _entries(rows, names, every):
+            affine[number, coordinate, factor] = value
         return cls(affine)
 
     def at(self, values: ArrayLike) -> Array:
@@ -165,6 +176,18 @@ class Rows:
     def slopes(self) -> Array:
         """Derivative of each row by each parameter; shape (row, parameter, coordinate)."""
         return np.ascontiguousarray(np.swapaxes(self.affine[:, :, 1:], 1, 2))
+
+
+def _entries(rows: Sequence[Row], names: Sequence[str], every: Sequence[str]) -> Iterator[tuple[int, int, int, float]]:
+    """Yield the entries of rows: row, coordinate among all of them, parameter counted from 1 or 0 for none, and value."""
+    index = {"": 0, **{name: i for i, name in enumerate(names, start=1)}}
+    position = {coordinate: i for i, coordinate in enumerate(every)}
+    for number, row in enumerate(rows):
+        for name, shape in (("", row.constant), *row.slopes.items()):
+            for coordinate, value in shape.items():
+                # Rows of sensors and loads hold whatever the body may do, also what this vehicle's does not.
+                if coordinate in position:
+                    yield number, position[coordinate], index[name], value
 
 
 @shown
@@ -226,13 +249,13 @@ class LinearModel:
         kappa, size = np.array(coefficients, dtype=float).reshape(-1, 2).T
         laws = np.array([LINEAR_LAWS.index(one.law) for one in elements], dtype=np.int64)
         used = {coordinate for one in elements for coordinate in one.row.constant}
-        further = unconstrained(names) if used.intersection(UNCONSTRAINED) else ()
-        rows = Rows.of([one.row for one in elements], names, further).affine
-        n, base = rows.shape[1], 1 + len(names)
+        every = (*coordinates(names), *(unconstrained(names) if used.intersection(UNCONSTRAINED) else ()))
+        n, base = len(every), 1 + len(names)
         # Every pair of an element's entries, each of a coordinate and a factor, the constant among these, is a part of κ g gᵀ.
-        owner, coordinate, factor = np.nonzero(rows)
-        entry = rows[owner, coordinate, factor]
-        counts = np.bincount(owner, minlength=len(rows))
+        entries = [one for one in _entries([one.row for one in elements], names, every) if one[3]]
+        owner, coordinate, factor = np.array([one[:3] for one in entries], dtype=np.int64).reshape(-1, 3).T
+        entry = np.array([one[3] for one in entries])
+        counts = np.bincount(owner, minlength=len(elements))
         begins = np.cumsum(counts) - counts
         first = np.repeat(np.arange(len(owner)), counts[owner])
         second = np.arange(len(first)) - np.repeat(np.cumsum(counts**2) - counts**2, counts**2)
@@ -245,8 +268,10 @@ class LinearModel:
         sums = np.bincount(place, size[own] * entry[first] * entry[second], math.prod(shape))
         terms = np.asarray(sums, dtype=np.float64).reshape(shape)
         kept = terms.any(axis=(1, 2, 3))
-        products = np.stack(np.unravel_index(codes[kept], (base, base, base)), axis=1)
-        return cls(tuple(names), products, terms[kept], tuple(elements))
+        if not kept.all():
+            codes, terms = codes[kept], terms[kept]
+        products = np.stack(np.unravel_index(codes, (base, base, base)), axis=1)
+        return cls(tuple(names), products, terms, tuple(elements))
 
     def with_known(self, known: Mapping[str, float]) -> LinearModel:
         """Return the model in which some parameters that multiply elements are known numbers, SI by name."""
@@ -275,9 +300,9 @@ class LinearModel:
 
     def matrices(self, values: ArrayLike) -> Matrices:
         """Return M, C and K at parameter values of shape (..., parameter), in the order of `names`."""
-        M, C, K = self._all_matrices(values)
+        M, C, K = whole = self._all_matrices(values)
         if not self.is_reduced:
-            return Matrices(M, C, K)
+            return whole
         T, n = self._reduction(M), self.size
         return Matrices(np.swapaxes(T, -1, -2) @ M @ T, C[..., :n, :n], K[..., :n, :n])
 
@@ -286,15 +311,14 @@ class LinearModel:
 
         Those along some directions, shape (direction, parameter), where these are given.
         """
-        first, second, third = np.moveaxis(_with_one(values)[self.products], 1, 0)
+        first, second, third = _with_one(values)[self._positions]
         others = np.array([second * third, first * third, first * second])
         factors = self._factors if along is None else self._factors @ along.T
-        flat = np.einsum("ik,ikp->pk", others, factors) @ self._flat
-        dM, dC, dK = np.moveaxis(flat.reshape(-1, *self.terms.shape[1:]), -3, 0)
+        dM, dC, dK = whole = self._combined(np.einsum("ik,ikp->pk", others, factors))
         if not self.is_reduced:
-            return Matrices(dM, dC, dK)
+            return whole
         # The derivative of the Schur complement is Tᵀ dM T: that of T is multiplied by momenta, which are zero.
-        T, n = self._reduction(self._all_matrices(values)[0]), self.size
+        T, n = self._reduction(self._all_matrices(values).M), self.size
         return Matrices(np.swapaxes(T, -1, -2) @ dM @ T, dC[..., :n, :n], dK[..., :n, :n])
 
     @cached_property
@@ -317,13 +341,23 @@ class LinearModel:
         """Return the coordinates `UNCONSTRAINED` as functions of the others, shape (3, n); 0 where no mass moves along them."""
         if not self.is_reduced:
             return np.zeros((len(UNCONSTRAINED), self.size))
-        return self._reduction(self._all_matrices(values)[0])[self.size :]
+        return self._reduction(self._all_matrices(values).M)[self.size :]
 
-    def _all_matrices(self, values: ArrayLike) -> Array:
-        """Return M, C and K over all coordinates, also those on which no force acts; shape (3, ..., all, all)."""
-        factors = _with_one(values)[..., self.products]
-        flat = factors.prod(axis=-1) @ self._flat
-        return np.moveaxis(flat.reshape(*flat.shape[:-1], *self.terms.shape[1:]), -3, 0)
+    def _all_matrices(self, values: ArrayLike) -> Matrices:
+        """Return M, C and K over all coordinates, also those on which no force acts; each of shape (..., all, all)."""
+        factors = _with_one(values)[..., self._positions]
+        return self._combined(factors[..., 0, :] * factors[..., 1, :] * factors[..., 2, :])
+
+    def _combined(self, factors: Array) -> Matrices:
+        """Return sums of the terms times factors, shape (..., product); each of shape (..., all, all)."""
+        entries, terms = self._nonzero
+        if entries is None:
+            flat = factors @ terms
+        else:
+            flat = np.zeros((*factors.shape[:-1], math.prod(self.terms.shape[1:])))
+            flat[..., entries] = factors @ terms
+        whole = flat.reshape(*factors.shape[:-1], *self.terms.shape[1:])
+        return Matrices(whole[..., 0, :, :], whole[..., 1, :, :], whole[..., 2, :, :])
 
     def _reduction(self, M: Array) -> Array:
         """Return all coordinates as functions of those on which forces act, T, shape (..., all, n)."""
@@ -357,7 +391,7 @@ class LinearModel:
 
     def velocities(self, values: ArrayLike) -> Array:
         """Return the velocities of all coordinates as functions of the state {X, Ẋ}, shape (n, n + m)."""
-        return state_matrix(self.accelerations(values)[0], self.massive)[: len(self.heave)]
+        return self.matrices(values).state_and_leading_inverse(self.massive)[0][: len(self.heave)]
 
     @cached_property
     def massive(self) -> int:
@@ -370,9 +404,21 @@ class LinearModel:
         return np.array(heave(self.names))
 
     @cached_property
-    def _flat(self) -> Array:
-        """The terms with a row for each product."""
-        return self.terms.reshape(len(self.terms), math.prod(self.terms.shape[1:]))
+    def _positions(self) -> NDArray[np.int64]:
+        """The products by factor, shape (3, product)."""
+        return np.ascontiguousarray(self.products.T)
+
+    @cached_property
+    def _nonzero(self) -> tuple[NDArray[np.int64] | None, Array]:
+        """Entries of the matrices that any term has, None for all, and the terms in these, shape (product, entry).
+
+        Of a large vehicle most are zero.
+        """
+        flat = self.terms.reshape(len(self.terms), math.prod(self.terms.shape[1:]))
+        if flat.shape[1] <= _DENSE:
+            return None, flat
+        entries = np.flatnonzero(flat.any(axis=0))
+        return entries, np.ascontiguousarray(flat[:, entries])
 
     @cached_property
     def _factors(self) -> Array:
@@ -383,4 +429,6 @@ class LinearModel:
 
 def _with_one(values: ArrayLike) -> Array:
     values = np.asarray(values, dtype=float)
-    return np.concatenate([np.ones((*values.shape[:-1], 1)), values], axis=-1)
+    with_one = np.ones((*values.shape[:-1], 1 + values.shape[-1]))
+    with_one[..., 1:] = values
+    return with_one

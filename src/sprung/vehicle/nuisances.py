@@ -39,12 +39,14 @@ def parameter_of(name: str) -> Parameter:
     KeyError
         If nothing has that name.
     """
+    if (of_vehicle := PARAMETERS.get(name)) is not None:
+        return of_vehicle
     if name.startswith(LOAD_MASS):
         return Parameter("kg", f"{name}, estimated from the recordings and its stated value", True)
     for quantity, unknown in SENSOR_UNKNOWNS.items():
         if name.startswith(sensor_unknown(quantity, "")):
             return unknown
-    return PARAMETERS[name]
+    raise KeyError(name)
 
 
 def sensor_unknown(quantity: SensorQuantity, channel: str) -> str:
@@ -64,6 +66,10 @@ def sensor_unknown(quantity: SensorQuantity, channel: str) -> str:
     return f"{quantity} of {channel}"
 
 
+_OF_SENSORS = tuple(sensor_unknown(quantity, "") for quantity in SENSOR_UNKNOWNS)
+"""First words of their names."""
+
+
 def is_of_sensor(name: str) -> bool:
     """Whether a parameter is an unknown of a sensor.
 
@@ -76,7 +82,7 @@ def is_of_sensor(name: str) -> bool:
     -------
     bool
     """
-    return name.startswith(tuple(sensor_unknown(quantity, "") for quantity in SENSOR_UNKNOWNS))
+    return name not in PARAMETERS and name.startswith(_OF_SENSORS)
 
 
 def is_nuisance(name: str) -> bool:
@@ -91,4 +97,4 @@ def is_nuisance(name: str) -> bool:
     -------
     bool
     """
-    return name.startswith(LOAD_MASS) or is_of_sensor(name)
+    return name not in PARAMETERS and name.startswith((LOAD_MASS, *_OF_SENSORS))

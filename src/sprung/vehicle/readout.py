@@ -82,7 +82,8 @@ class Readout:
         read = [sensor.rows(own, wheelbase) for sensor in sensors]
         orders = tuple(sorted({order for one in read for order in one})) or (2,)
         origin, *moved = (body_point(*place) for place in ((0.0, 0.0), (1.0, 0.0), (0.0, 1.0)))
-        placed = [dict.fromkeys(one, row - origin) for row in moved for one in read]
+        moves = [row - origin for row in moved]
+        placed = [dict.fromkeys(one, move) for move in moves for one in read]
         return cls(tuple(names), _stacked(read, orders, own), orders, positions, _stacked(placed, orders, own))
 
     @classmethod

@@ -8,6 +8,8 @@ one with a table over the blocks, give them all.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -113,31 +115,35 @@ def exponential_gram(exponent: Complex, samples: Index, group: Index | None = No
     return whole
 
 
-def split_into_blocks(values: Real, usable: NDArray[np.bool_] | None = None) -> Real:
-    """Centre a record and cut it into blocks, the last one filled with zeros.
+def split_into_blocks(records: Sequence[Real], usable: NDArray[np.bool_] | None = None) -> Real:
+    """Centre records and cut them into blocks, the last one of each filled with zeros.
 
     Parameters
     ----------
-    values
-        Of any one unit, shape (channel, time).
+    records
+        Of any one unit, shape (channel, time) each.
     usable
         Which channels are used, shape (channel,); the others become zero.
 
     Returns
     -------
     ndarray
-        In the unit of the values, shape (block, channel, BLOCK_LENGTH).
+        In the unit of the records, one after the other, shape (block, channel, BLOCK_LENGTH).
     """
-    channels, samples = values.shape
-    count, rest = divmod(samples, BLOCK_LENGTH)
-    cut = np.zeros((count + (rest > 0), channels, BLOCK_LENGTH))
-    chosen = np.ones(channels, dtype=bool) if usable is None else usable
-    mean = np.where(chosen, values.mean(axis=1), 0.0)[:, None]
-    whole = values[:, : count * BLOCK_LENGTH].reshape(channels, count, BLOCK_LENGTH)
-    np.subtract(whole.swapaxes(0, 1), mean, out=cut[:count], where=chosen[:, None])
-    if rest:
-        np.subtract(values[:, count * BLOCK_LENGTH :], mean, out=cut[count, :, :rest], where=chosen[:, None])
-    return cut
+    channels = len(records[0])
+    blocks = np.zeros((sum(-(-record.shape[1] // BLOCK_LENGTH) for record in records), channels, BLOCK_LENGTH))
+    chosen = (np.ones(channels, dtype=bool) if usable is None else usable)[:, None]
+    begin = 0
+    for record in records:
+        count, rest = divmod(record.shape[1], BLOCK_LENGTH)
+        mean = np.where(chosen, record.mean(axis=1, keepdims=True), 0.0)
+        whole = record[:, : count * BLOCK_LENGTH].reshape(channels, count, BLOCK_LENGTH)
+        np.subtract(whole.swapaxes(0, 1), mean, out=blocks[begin : begin + count], where=chosen)
+        begin += count
+        if rest:
+            np.subtract(record[:, count * BLOCK_LENGTH :], mean, out=blocks[begin, :, :rest], where=chosen)
+            begin += 1
+    return blocks
 
 
 def correlate_with_exponentials(
