@@ -12,6 +12,7 @@ from dataclasses import replace
 
 from sprung.estimation import FitResult
 from sprung.selection.backward_elimination import leave_out_unneeded
+from sprung.selection.contact import from_contact
 from sprung.selection.error_budget import MISFIT_LEFT_BY_ALL
 from sprung.selection.scoring import WORTH_A_FIT, Scores, score_terms
 from sprung.selection.search import ModelSearch
@@ -63,6 +64,9 @@ def select_linear_terms(
         search, accepted = accept_first(search, ranked, among)
         if not accepted:
             break
+        if search.is_overdispersed and len(among) == len(_LINEAR):
+            # The model before did not show where a wheel last touched: samples before that would accept any further term.
+            search = from_contact(search)
         refused = ()
     return search
 
