@@ -99,6 +99,25 @@ def test_half_distances_are_separated_in_much_noise(seed: int) -> None:
     assert result.verdict.state == "accept"
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [1, 2, 3, 4])
+def test_drift_is_no_rubber_that_relaxes_in_seconds(seed: int) -> None:
+    mass = KnownValue(TABLE_1_CAR.total_mass, 0.001 * TABLE_1_CAR.total_mass)
+    campaign = sprung.simulate(TABLE_1_CAR, loads=[BALLAST], noise=0.02, seed=seed, known={"total_mass": mass})
+    random = np.random.default_rng(seed)
+    recordings = []
+    for recording in campaign.recordings:
+        channels, samples = recording.values.shape
+        drift = 0.05 * random.choice([-1.0, 1.0], (channels, 1)) * np.linspace(0.0, 1.0, samples)
+        recordings.append(replace(recording, values=recording.values + drift))
+    result = sprung.identify(campaign.with_recordings(tuple(recordings)), fall=False)
+    assert "zener" not in result.fit.model
+    assert result.verdict.state == "doubtful"
+    mass_found = result.parameters["m_s"].value
+    assert mass_found is not None
+    assert abs(mass_found / TABLE_1_CAR.m_s - 1) < 0.01
+
+
 @pytest.mark.long
 def test_friction_and_rebound_of_a_van_are_selected() -> None:
     """From an ordinary vehicle, whose initial states have far to go: their steps must not be shortened without need."""
