@@ -10,7 +10,8 @@ import pytest
 import sprung
 from sprung.campaign import ModelChoice
 from sprung.errors import InputError
-from sprung.vehicle import TABLE_1_CAR, Load, Vehicle, parse_record
+from sprung.uncertainty import KnownValue
+from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, Load, Vehicle, parse_record
 
 HANGING = 2 * np.pi * 9.5  # 1/s of the engine on its mounts, the body held
 
@@ -82,6 +83,39 @@ def test_bump_stops_are_selected_though_the_linear_fit_went_astray() -> None:
         assert found.value is not None
         assert found.std is not None
         assert abs(found.value - value) < 4 * found.std
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_half_distances_are_separated_in_much_noise(seed: int) -> None:
+    """The model without them lets decays begin before the last tyre touches, and gravity explains nearly as much at first."""
+    mass = KnownValue(SCHOOL_BUS.total_mass, 0.001 * SCHOOL_BUS.total_mass)
+    wheels = [["fl", "fr", "rl", "rr"], ["fl", "fr"], ["rl", "rr"], ["fl", "rl"], ["fr", "rr"]]
+    drops = [{"wheels": dropped} for dropped in wheels]
+    campaign = sprung.simulate(SCHOOL_BUS, drops=drops, noise=0.2, seed=seed, known={"total_mass": mass})
+    result = sprung.identify(campaign, fall=False)
+    assert (result.fit.model, result.fit.tracks) == ((), "separate")
+    assert result.fit.inflation < 1.1
+    assert result.verdict.state == "accept"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [1, 2, 3, 4])
+def test_drift_is_no_rubber_that_relaxes_in_seconds(seed: int) -> None:
+    mass = KnownValue(TABLE_1_CAR.total_mass, 0.001 * TABLE_1_CAR.total_mass)
+    campaign = sprung.simulate(TABLE_1_CAR, loads=[BALLAST], noise=0.02, seed=seed, known={"total_mass": mass})
+    random = np.random.default_rng(seed)
+    recordings = []
+    for recording in campaign.recordings:
+        channels, samples = recording.values.shape
+        drift = 0.05 * random.choice([-1.0, 1.0], (channels, 1)) * np.linspace(0.0, 1.0, samples)
+        recordings.append(replace(recording, values=recording.values + drift))
+    result = sprung.identify(campaign.with_recordings(tuple(recordings)), fall=False)
+    assert "zener" not in result.fit.model
+    assert result.verdict.state == "doubtful"
+    mass_found = result.parameters["m_s"].value
+    assert mass_found is not None
+    assert abs(mass_found / TABLE_1_CAR.m_s - 1) < 0.01
 
 
 @pytest.mark.long

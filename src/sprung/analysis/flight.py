@@ -17,10 +17,10 @@ from sprung.analysis.analysis import Analysis
 from sprung.analysis.clocks import use_clock_flights
 from sprung.analysis.on_pads import NOT_STEPPED, has_pads
 from sprung.campaign import Campaign
-from sprung.estimation import CONVERGED, FitStatistics, uncertainty_of, weigh_statements
+from sprung.estimation import FitStatistics, uncertainty_of, weigh_statements
 from sprung.preprocess import DropObservation, FreeDecay, find_flights
 from sprung.progress import Progress, Step
-from sprung.selection import ModelSearch, fit_structure, select_gravity_leakage
+from sprung.selection import ModelSearch, final_tolerance, fit_structure, select_gravity_leakage
 from sprung.vehicle import (
     Readout,
     Vehicle,
@@ -79,7 +79,8 @@ def _with_fall(run: Analysis, found: Sequence[FreeDecay | None], progress: Progr
     states = _initial_states(run, found)
     decays = tuple(decay if flight is None else flight for flight, decay in zip(found, run.decays, strict=True))
     structure = replace(run.model.structure, unilateral_tyres=True)
-    other = fit_structure(structure, decays, fit, CONVERGED, progress, states)
+    enough = final_tolerance(ModelSearch(structure, fit, run.decays))
+    other = fit_structure(structure, decays, fit, enough, progress, states)
     search = select_gravity_leakage(ModelSearch(structure, other, decays, run.model.steps, progress))
     if not search.fit.converged or np.any(search.fit.noise > _NO_WORSE * fit.noise):
         return None

@@ -6,7 +6,7 @@ from sprung.selection.backward_elimination import (
     leave_out_unneeded,
     needed_terms,
 )
-from sprung.selection.contact import from_contact
+from sprung.selection.contact import final_tolerance, from_contact
 from sprung.selection.description import TermDescription, describe_terms
 from sprung.selection.error_budget import FALSE_ALARM_SHARE, required_gain
 from sprung.selection.finite_rotation import select_finite_rotation
@@ -44,6 +44,7 @@ __all__ = [
     "choose_structure",
     "confirm_low_pass",
     "describe_terms",
+    "final_tolerance",
     "fit_forced_terms",
     "fit_requested_terms",
     "fit_structure",

@@ -44,15 +44,30 @@ def from_contact(search: ModelSearch, most: int = MOST_STEPS, enough: float | No
     -------
     ModelSearch
     """
-    if enough is None:
-        enough = CONVERGED
-        if search.structure.is_time_stepped:
-            # Where the model has errors, statements about the vehicle move the fit again, once its overdispersion is known.
-            enough = _STEPPED if search.overdispersion == 1 else NEAR * search.overdispersion
+    enough = final_tolerance(search) if enough is None else enough
     decays, fit = fit_from_contact(
         search.decays, search.structure.linear_models, search.fit, lambda *start: _refit(search, enough, most, *start)
     )
     return replace(search, decays=decays, fit=fit)
+
+
+def final_tolerance(search: ModelSearch) -> float:
+    """Return the expected gain in log-likelihood at which a fit has converged from which a result may be taken.
+
+    Parameters
+    ----------
+    search
+        The model that is fitted, and a fit that shows its overdispersion.
+
+    Returns
+    -------
+    float
+        Dimensionless.
+    """
+    if not search.structure.is_time_stepped:
+        return CONVERGED
+    # Where the model has errors, statements about the vehicle move the fit again, once its overdispersion is known.
+    return _STEPPED if search.overdispersion == 1 else NEAR * search.overdispersion
 
 
 def is_likelier(search: ModelSearch, other: ModelSearch) -> bool:

@@ -43,9 +43,15 @@ _AT_REST = 1e4
 _ALMOST_NONE = 0.01
 """Part of a usual Zener branch that is nothing in practice: without any, its relaxation time would be undefined."""
 
+_NEGLIGIBLE_BRANCH = 0.01
+"""Rate of a Zener branch over that of the spring, below which it is left out."""
+
 _MOST_LOSS = 0.008
 """s: damping of a rubber mount over its rate, at the most. With more, a damper behind a mount moves as one beside a Zener
 branch: their forces are the same function of frequency."""
+
+_MOST_RELAXATION = 0.5
+"""s in which rubber relaxes, at the most, ten times what is usual: slower branches are drift of sensors."""
 
 _HOP, _LOSS = 12.0, 0.1
 """Hz at which a wheel usually hops, and the loss factor of rubber there."""
@@ -82,6 +88,15 @@ def _inboard_share(values: Values, axle: str) -> float:
 def _gravity(values: Values) -> float:
     """Share of the roll stiffness of all springs."""
     return values["w_h"] / _roll_rate(values)
+
+
+def _relaxation_times(values: Values) -> list[float]:
+    """Relaxation times of the Zener branches that matter, s, without sign: a negative rate is another matter."""
+    return [
+        abs(values[f"c_z{axle}"] / values[f"k_z{axle}"])
+        for axle in axles_of(values)
+        if abs(values[f"k_z{axle}"]) >= _NEGLIGIBLE_BRANCH * values[f"k_s{axle}"]
+    ]
 
 
 def _interconnection(values: Values, part: float) -> Values:
@@ -236,7 +251,7 @@ LINEAR_TERMS = (
         usual=lambda own, _: usual_rubber(own),
         typical=USUAL_RELAXATION,
         spread=2.0,
-        negligible=0.01,
+        negligible=_NEGLIGIBLE_BRANCH,
         description=TermDescription(
             "{axle} springs stiffer by {0} in fast motion, which relaxes in {1}",
             (
@@ -246,6 +261,8 @@ LINEAR_TERMS = (
             again="{axle} ones by {0}, which relaxes in {1}",
         ),
         held="c_z",
+        character=_relaxation_times,
+        band=(0.0, _MOST_RELAXATION),
         undefined=lambda own, _: {
             name: _ALMOST_NONE * value for name, value in usual_rubber(own).items() if name.startswith(("k_z", "c_z"))
         },

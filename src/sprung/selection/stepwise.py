@@ -12,6 +12,7 @@ from dataclasses import replace
 
 from sprung.estimation import FitResult
 from sprung.selection.backward_elimination import leave_out_unneeded
+from sprung.selection.contact import from_contact
 from sprung.selection.error_budget import MISFIT_LEFT_BY_ALL
 from sprung.selection.scoring import WORTH_A_FIT, Scores, score_terms
 from sprung.selection.search import ModelSearch
@@ -33,6 +34,9 @@ _ROUNDS = 2 * len(TERMS)
 
 _EXPLAINED = 0.7
 """Part of a small misfit's overdispersion that a term may leave: any term seems to explain some of an error of another kind."""
+
+_RIVALS, _RIVAL_SCORE = 2, 0.5
+"""How many terms are fitted beside one that leaves a misfit, and their scores at the least, as a part of its score."""
 
 _FURTHER_ROUNDS, _TRIED_BESIDE = 5, 2
 """How many times terms are looked for beside nonlinear ones, and how many are fitted each time until one is accepted."""
@@ -60,9 +64,12 @@ def select_linear_terms(
         terms = [term for term in search.open_terms(among) if term not in refused]
         search, scores = score_terms(search, terms)
         search, ranked = rank_terms(search, scores, WORTH_A_FIT / search.discount_of(search.fit))
-        search, accepted = accept_first(search, ranked, among)
+        search, accepted = accept_likeliest(search, ranked, scores, among)
         if not accepted:
             break
+        if search.is_overdispersed and len(among) == len(_LINEAR):
+            # The model before did not show where a wheel last touched: samples before that would accept any further term.
+            search = from_contact(search)
         refused = ()
     return search
 
@@ -142,6 +149,54 @@ def accept_first(search: ModelSearch, terms: Sequence[str], among: Sequence[str]
         if tried.structure.names != search.structure.names:
             return tried, True
         search = tried
+    return search, False
+
+
+def accept_likeliest(
+    search: ModelSearch, terms: Sequence[str], scores: Scores, among: Sequence[str] = _LINEAR
+) -> tuple[ModelSearch, bool]:
+    """Fit linear terms one after the other until one is accepted, and those instead of it that may explain more.
+
+    Where much is left to explain, a term gains by what another one would explain wholly: scores that differ little do not
+    tell which. So where the first one that is accepted leaves a misfit, the next ones are fitted as well.
+
+    Parameters
+    ----------
+    search
+        The present model.
+    terms
+        Best first.
+    scores
+        Of these terms.
+    among
+        As for `try_term`.
+
+    Returns
+    -------
+    search
+        With the likeliest of the terms that are accepted, by the Bayesian information criterion.
+    accepted
+        Whether one was.
+    """
+    for number, term in enumerate(terms):
+        tried = try_term(search, term, among)
+        if tried.structure.names == search.structure.names:
+            search = tried
+            continue
+        if not tried.is_overdispersed:
+            return tried, True
+        rivals = [other for other in terms[number + 1 :] if scores[other][0] > _RIVAL_SCORE * scores[term][0]]
+        best = term
+        for other in rivals[:_RIVALS]:
+            rival, before = try_term(search, other, among), search
+            if rival.structure.names != search.structure.names and rival.delta_bic(tried) > 0:
+                best, worse, tried, beaten = other, best, rival, tried
+            else:
+                worse, beaten = other, rival
+            against = f"{best} explains more"
+            search = search.recorded({worse: beaten.gain_over(search)}, True, False, against)
+            tried = replace(tried, steps=(*search.steps, *tried.steps[len(before.steps) :]))
+        return tried, True
     return search, False
 
 
