@@ -39,6 +39,10 @@ _REACHED = 0.05  # part of the distance, squared, that a step may miss another f
 _EXACT_ENOUGH = 0.005  # relative error that a quantity called exact may have before it is reported
 MOST_STEPS, _PROVISIONAL_STEPS = 100, 40  # at the most, where the end counts and where it is only a stage
 _LONGEST_STEP = 1.0  # in logarithms: no parameter changes by more than a factor of e at once
+_RUNAWAY = 2 * np.log(1e6)
+"""Loss of twice the log-likelihood by each sample from which a motion has run away: noise that would be a million times larger.
+No derivative is to be had there, and no step leads back."""
+
 _ROUNDING = 1e-10  # of the cost
 _LARGEST_FALL = 0.25  # factor by which a step may lower a noise variance at the most, where unknowns couple them
 _NOISE_ROUNDS = 2  # after the first, in which noise levels settle that unknowns couple
@@ -313,7 +317,7 @@ class EstimationProblem:
         u = self.priors.project(iterate.u + step)
         at = iterate.at.moved(self.priors.coordinates.values(u), damping)
         gain = self.gain(iterate, Iterate(u, at))
-        if not np.isfinite(gain):
+        if not gain > -_RUNAWAY * float(self._observations.sum()):
             return iterate, -np.inf
         tried = Iterate(u, at.reweighted(1 / self.noise_variance(at.residual_sums, iterate.at)))
         return tried, max(gain, 0.0) if gain >= -_ROUNDING * abs(self.cost(iterate)) else gain
