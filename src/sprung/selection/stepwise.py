@@ -14,6 +14,7 @@ from sprung.estimation import FitResult
 from sprung.selection.backward_elimination import leave_out_unneeded
 from sprung.selection.contact import from_contact
 from sprung.selection.error_budget import MISFIT_LEFT_BY_ALL
+from sprung.selection.low_pass import select_low_pass
 from sprung.selection.scoring import WORTH_A_FIT, Scores, score_terms
 from sprung.selection.search import ModelSearch
 from sprung.selection.term_fits import (
@@ -75,7 +76,7 @@ def select_linear_terms(
 
 
 def select_further_terms(search: ModelSearch) -> ModelSearch:
-    """Return the search after terms of any kind have been tried beside the nonlinear ones that it has.
+    """Return the search after terms of any kind, and a low-pass of the loggers, have been tried beside its nonlinear ones.
 
     Parameters
     ----------
@@ -105,7 +106,9 @@ def select_further_terms(search: ModelSearch) -> ModelSearch:
         search, accepted = accept_first(search, best)
         if not accepted:
             break
-    return search
+    # What a low-pass does shows once nothing larger is left, and further terms once it is there.
+    behind = select_low_pass(search)
+    return search if behind is search else select_further_terms(behind)
 
 
 def rank_terms(search: ModelSearch, scores: Scores, weight: float) -> tuple[ModelSearch, list[str]]:
