@@ -30,12 +30,31 @@ def eliminate(information: Real, gradient: Real, kept: int) -> tuple[Real, Real,
     """
     across, others = information[..., kept:, :kept], information[..., kept:, kept:]
     right = np.concatenate([across, gradient[..., kept:, None]], axis=-1)
-    try:
-        solved = np.linalg.solve(others, right)
-    except np.linalg.LinAlgError:
-        # Of a motion that grows, every initial state shows the same growth alone: what it hides keeps its value.
-        solved = np.linalg.pinv(others, rcond=_HIDDEN, hermitian=True) @ right
+    solved = solve_normal_equations(others, right)
     response, moved = -solved[..., :kept], solved[..., kept]
     transposed = np.swapaxes(across, -1, -2)
     reduced = information[..., :kept, :kept] + transposed @ response
     return reduced, gradient[..., :kept] - (transposed @ moved[..., None])[..., 0], response
+
+
+def solve_normal_equations(information: Real, right: Real) -> Real:
+    """Solve normal equations; what rounding hides keeps its value.
+
+    Of a motion that grows every initial state shows the same growth alone, and their information is singular.
+
+    Parameters
+    ----------
+    information
+        Symmetric, shape (..., unknown, unknown), in the units of the products of the unknowns.
+    right
+        Right-hand sides, shape (..., unknown, column).
+
+    Returns
+    -------
+    ndarray
+        Shape (..., unknown, column).
+    """
+    try:
+        return np.asarray(np.linalg.solve(information, right))
+    except np.linalg.LinAlgError:
+        return np.asarray(np.linalg.pinv(information, rcond=_HIDDEN, hermitian=True) @ right)

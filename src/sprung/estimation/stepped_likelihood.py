@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.estimation.elimination import eliminate
+from sprung.estimation.elimination import eliminate, solve_normal_equations
 from sprung.estimation.stepped_motion import SteppedMotion
 
 if TYPE_CHECKING:
@@ -66,7 +66,8 @@ class TimeSteppingAt:
         own = information[:, parameters:, parameters:]
         response = np.einsum("dzp,p->dz", information[:, parameters:, :parameters], values - self.values)
         damped = own + damping * own * np.eye(own.shape[1])
-        step = np.linalg.solve(damped, gradient[:, parameters:, None]) - np.linalg.solve(own, response[:, :, None])
+        step = solve_normal_equations(damped, gradient[:, parameters:, None])
+        step -= solve_normal_equations(own, response[:, :, None])
         step = step[:, :, 0]
         of_model = (values - self.values)[: self.objective.sensors.shared]
         change = np.hstack([np.tile(of_model, (len(step), 1)), step])
@@ -158,7 +159,8 @@ class TimeSteppingAt:
         """Number of eliminated unknowns that each channel determines, shape (channel,)."""
         parameters = len(self.values)
         products = self.stepped.products[:, :, parameters:-1, parameters:-1]
-        inverse = np.linalg.inv(self._normal_equations[0][:, parameters:, parameters:])
+        own = self._normal_equations[0][:, parameters:, parameters:]
+        inverse = solve_normal_equations(own, np.broadcast_to(np.eye(own.shape[-1]), own.shape))
         leverage: Real = self.weights * np.einsum("dij,dcji->c", inverse, products, optimize=True)
         return leverage
 

@@ -13,7 +13,6 @@ from sprung.progress import Step
 from sprung.selection.contact import ON_THE_WAY, from_contact, is_likelier
 from sprung.selection.from_ordinary_vehicle import select_from_ordinary_vehicle
 from sprung.selection.linear_terms import ENGINE
-from sprung.selection.low_pass import confirm_low_pass
 from sprung.selection.scoring import score_terms
 from sprung.selection.search import ModelSearch
 from sprung.selection.stepwise import rank_terms, select_further_terms, try_likeliest
@@ -62,7 +61,7 @@ def select_nonlinear_terms(search: ModelSearch, plain: ModelStructure) -> ModelS
     gains = {step.extra: step.gain for step in search.steps if step.taken}
     gone = {term: gains[term] for term in search.selected if term not in best.selected}
     best = replace(best, steps=steps).recorded(gone, True, False, f"it is not needed beside {beside}")
-    return select_gravity_leakage(confirm_low_pass(best))
+    return select_gravity_leakage(best)
 
 
 def _searches(search: ModelSearch, plain: ModelStructure, ranked: Sequence[str]) -> Iterator[SearchFromBase]:

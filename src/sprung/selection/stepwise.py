@@ -14,7 +14,7 @@ from sprung.estimation import FitResult
 from sprung.selection.backward_elimination import leave_out_unneeded
 from sprung.selection.contact import from_contact
 from sprung.selection.error_budget import MISFIT_LEFT_BY_ALL
-from sprung.selection.low_pass import select_low_pass
+from sprung.selection.low_pass import confirm_low_pass, select_low_pass
 from sprung.selection.scoring import WORTH_A_FIT, Scores, score_terms
 from sprung.selection.search import ModelSearch
 from sprung.selection.term_fits import (
@@ -108,7 +108,10 @@ def select_further_terms(search: ModelSearch) -> ModelSearch:
             break
     # What a low-pass does shows once nothing larger is left, and further terms once it is there.
     behind = select_low_pass(search)
-    return search if behind is search else select_further_terms(behind)
+    if behind is search:
+        return search
+    further = select_further_terms(behind)
+    return further if further.structure.names == behind.structure.names else confirm_low_pass(further)
 
 
 def rank_terms(search: ModelSearch, scores: Scores, weight: float) -> tuple[ModelSearch, list[str]]:
