@@ -21,6 +21,9 @@ _ORDER = 4
 _CORNER, _RATIO = 100.0, 1.6
 """Corner that is tried first, Hz, and how far apart others are; half as far around one that was found."""
 
+_SAME = 0.05
+"""Relative difference of corners that is none in practice."""
+
 _OPEN = LowPass(np.inf, _ORDER)
 """That of a logger without one: its motions are stepped as finely as those before another one."""
 
@@ -46,11 +49,15 @@ def select_low_pass(search: ModelSearch) -> ModelSearch:
     structure = search.structure
     if not structure.is_nonlinear or structure.low_pass is not None or not search.is_overdispersed:
         return search
-    return _with_likeliest(search, _CORNER, _RATIO)
+    corner = _likeliest_corner(search, _CORNER, _RATIO)
+    if corner is None:
+        return search
+    found = search.refit(replace(structure, low_pass=LowPass(corner, _ORDER)))
+    return found if found.gain_over(search) > search.required_of_switch else search
 
 
 def confirm_low_pass(search: ModelSearch) -> ModelSearch:
-    """Return the search with the low-pass that its final model has, or none: a term may explain now what it explained.
+    """Return the search with the low-pass that its larger model has, or none: a term may explain now what it explained.
 
     Parameters
     ----------
@@ -61,14 +68,17 @@ def confirm_low_pass(search: ModelSearch) -> ModelSearch:
     -------
     ModelSearch
     """
-    found = search.structure.low_pass
-    if found is None:
+    present = search.structure.low_pass
+    if present is None:
         return search
-    return _with_likeliest(search.refit(replace(search.structure, low_pass=None)), found.corner, _RATIO**0.5)
+    corner = _likeliest_corner(search, present.corner, _RATIO**0.5)
+    if corner is not None and abs(np.log(corner / present.corner)) < _SAME:
+        return search
+    return search.refit(replace(search.structure, low_pass=None if corner is None else LowPass(corner, _ORDER)))
 
 
-def _with_likeliest(search: ModelSearch, first: float, ratio: float) -> ModelSearch:
-    """Return a search without a low-pass with the likeliest one: its corner is climbed to from a first one, Hz, by a ratio."""
+def _likeliest_corner(search: ModelSearch, first: float, ratio: float) -> float | None:
+    """Return the corner that explains the beginnings of the decays best, climbed to from a first one, Hz; None for none."""
     structure, highest = search.structure, HIGHEST_CORNER * min(decay.rate for decay in search.decays)
     search.progress(Step("looking for a low-pass of the loggers"))
     without = search.refit(replace(structure, low_pass=_OPEN), _ITERATIONS, beginning_only=True)
@@ -82,10 +92,7 @@ def _with_likeliest(search: ModelSearch, first: float, ratio: float) -> ModelSea
         # Where one that is too low only loses, a higher one is tried, and then none.
         lower = [best / ratio] * (best == min(gains) and gains[best] > 0)
         waiting = lower + [best * ratio] * (best == max(gains) and (gains[best] > 0 or len(gains) == 1))
-    if not gains or max(gains.values()) <= search.required_of_switch:
-        return search
-    found = search.refit(replace(structure, low_pass=LowPass(_vertex(gains), _ORDER)))
-    return found if found.gain_over(search) > search.required_of_switch else search
+    return _vertex(gains) if max(gains.values(), default=0.0) > search.required_of_switch else None
 
 
 def _vertex(gains: Mapping[float, float]) -> float:

@@ -87,6 +87,7 @@ def select_further_terms(search: ModelSearch) -> ModelSearch:
     -------
     ModelSearch
     """
+    before = search
     tried: set[str] = set()
     for _ in range(_FURTHER_ROUNDS):
         if not search.structure.is_nonlinear or not search.is_overdispersed:
@@ -106,12 +107,11 @@ def select_further_terms(search: ModelSearch) -> ModelSearch:
         search, accepted = accept_first(search, best)
         if not accepted:
             break
-    # What a low-pass does shows once nothing larger is left, and further terms once it is there.
+    if search.structure.low_pass is not None:
+        return search if search.structure.names == before.structure.names else confirm_low_pass(search)
+    # What a low-pass does may show only once nothing larger is left, and further terms once it is there.
     behind = select_low_pass(search)
-    if behind is search:
-        return search
-    further = select_further_terms(behind)
-    return further if further.structure.names == behind.structure.names else confirm_low_pass(further)
+    return search if behind is search else select_further_terms(behind)
 
 
 def rank_terms(search: ModelSearch, scores: Scores, weight: float) -> tuple[ModelSearch, list[str]]:
