@@ -99,12 +99,13 @@ def fit_nonlinear(
     progress(Step(f"fitting with {laws}, step by step through all drops"))
     known = statements_of(known, sensors, next(iter(models.values())).names)
     steps, values = 0, expected_nuisances(known) | dict(start)
+    # What a low-pass makes of a friction that turns round depends on when it does: its corner is found by fits to beginnings.
     stages = (
         [
             (
                 [_beginning(decay) for decay in decays],
                 max(enough, NEAR if beginning_only else _ON_THE_WAY),
-                _longest_on_the_way(low_pass),
+                _COARSE if low_pass is None or not beginning_only else _FINE,
             )
         ]
         if beginning_only or not near
@@ -195,11 +196,6 @@ def score_stepped_terms(
         basis = np.hstack([fitted, left[:, sizes > _BOUND]])
         gains[name] = score_test(basis.T @ information @ basis, basis.T @ gradient, fitted.shape[1]).gain()
     return gains
-
-
-def _longest_on_the_way(low_pass: LowPass | None) -> float:
-    """Return the longest step on the way, s; what a low-pass makes of a friction that turns round depends on when it does."""
-    return _COARSE if low_pass is None else _FINE
 
 
 def _objective(
