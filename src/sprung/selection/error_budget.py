@@ -26,6 +26,9 @@ MISFIT_LEFT_AT_FIRST, MISFIT_LEFT = 0.7, 0.1
 """Part of the linear vehicle's model error that a nonlinear one may leave in the beginnings of the decays after its first steps
 and at its end: a term that leaves more is not the missing one, or not the only one, and its estimates are of no use."""
 
+MISFIT_LEFT_BESIDE = 0.3
+"""The same of a nonlinear term that may lack only what refines it: friction that grows with the load, a second knee."""
+
 MISFIT_LEFT_BY_ALL = 0.05
 """The same of a linear term that resembles many a fault: it may leave geometry of second order, say, that is tried later."""
 

@@ -12,13 +12,14 @@ import numpy as np
 
 from sprung.estimation import NEAR, FitResult, fit_linear
 from sprung.progress import Step
-from sprung.selection.error_budget import MISFIT_LEFT, MISFIT_LEFT_AT_FIRST
+from sprung.selection.error_budget import MISFIT_LEFT, MISFIT_LEFT_AT_FIRST, MISFIT_LEFT_BESIDE
 from sprung.selection.linear_terms import ENGINE
 from sprung.selection.ordinary_vehicle import ITERATIONS, fit_from_ordinary_vehicle, is_ordinary, ordinary_vehicle
 from sprung.selection.scoring import WORTH_A_FIT, with_best_start
 from sprung.selection.search import ModelSearch
 from sprung.selection.starts import fit_structure, has_positive_masses, start_values
 from sprung.selection.structure import ModelStructure
+from sprung.selection.terms import TERMS
 from sprung.uncertainty import KnownValue
 
 _STEPS_FROM_BELOW = 3
@@ -170,8 +171,24 @@ def fit_nonlinear_term(search: ModelSearch, larger: ModelStructure, first: FitRe
     if not first.converged:
         first = fit_structure(larger, search.decays, first, NEAR, search.progress, beginning_only=True)
     if not search.structure.is_nonlinear and search.leaves_misfit(first, MISFIT_LEFT):
-        return None
+        larger, first = _refined(search, larger, first)
+        if search.leaves_misfit(first, MISFIT_LEFT):
+            return None
     return replace(search, fit=first).refit(larger)
+
+
+def _refined(search: ModelSearch, larger: ModelStructure, first: FitResult) -> tuple[ModelStructure, FitResult]:
+    """Return a nonlinear model that explains most of the misfit with what refines it: the likeliest, fitted to beginnings."""
+    if search.leaves_misfit(first, MISFIT_LEFT_BESIDE):
+        return larger, first
+    added = {*larger.terms} - {*search.structure.terms}
+    refining = [term for term in search.structure.open_terms if TERMS[term].refines in added - {term}]
+    models = [larger.with_terms((*larger.terms, term)) for term in refining if not TERMS[term].on_request]
+    fits = [
+        fit_structure(one, search.decays, first, NEAR, search.progress, beginning_only=True, most=_FIRST_ITERATIONS)
+        for one in models
+    ]
+    return max([(larger, first), *zip(models, fits, strict=True)], key=lambda pair: pair[1].loglikelihood)
 
 
 def select_roll_axis_height(search: ModelSearch) -> ModelSearch:
