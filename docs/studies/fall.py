@@ -119,7 +119,8 @@ correct model.
 
 *Error ratio*: root-mean-square error from the release on, divided by that from the landing on, median over the
 parameters. *Error over stated*: root-mean-square error divided by the stated standard uncertainty, over all parameters,
-from the landing on and from the release on. *Covered*: 95 % intervals that contain the true value, likewise.
+from the landing on and from the release on. *Covered*: 95 % intervals that contain the true value, likewise. *Accepted*:
+from the release on. Rejected campaigns state no values: {_rejected(trials)} of all, from the landing on.
 
 ## Reproduction
 
@@ -127,13 +128,18 @@ from the landing on and from the release on. *Covered*: 95 % intervals that cont
 """
 
 
+def _rejected(trials: Sequence[Trial]) -> int:
+    return sum(trial.verdict[0] == "reject" for trial in trials)
+
+
 def _row(name: str, trials: Sequence[Trial]) -> list[str]:
     if not trials:
         return []
-    names = [one for one in trials[0].errors if all(one in trial.errors for trial in trials)]
-    errors = np.array([[trial.errors[one] for one in names] for trial in trials])
-    stated = np.array([[trial.stated[one] for one in names] for trial in trials])
-    covered = np.array([[trial.covered[one] for one in names] for trial in trials])
+    estimated = [trial for trial in trials if trial.errors]  # a rejected campaign states nothing
+    names = [one for one in estimated[0].errors if all(one in trial.errors for trial in estimated)]
+    errors = np.array([[trial.errors[one] for one in names] for trial in estimated])
+    stated = np.array([[trial.stated[one] for one in names] for trial in estimated])
+    covered = np.array([[trial.covered[one] for one in names] for trial in estimated])
     rms = np.sqrt((errors**2).mean(axis=0))
     scaled = np.sqrt(((errors / stated) ** 2).mean(axis=(0, 1)))
     return [
