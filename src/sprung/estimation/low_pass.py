@@ -114,10 +114,7 @@ class SampledLowPass(NamedTuple):
         """Numerator and denominator of its transfer function in z⁻¹."""
         if self.low_pass is None:
             return np.ones(1), np.ones(1)
-        # The bilinear transformation bends high frequencies. What matters is the delay of low ones, which it leaves as it is.
-        bent = self.rate / np.pi * np.arctan(np.pi * self.low_pass.corner / self.rate)
-        numerator, denominator = butter(self.low_pass.order, bent, fs=self.rate)
-        return numerator, denominator
+        return _transfer_function(self.low_pass, self.rate)
 
     def filtered(self, signals: Real, axis: int) -> Real:
         """Return signals behind the low-pass, which rested before at their first values; zero where they are not known.
@@ -162,6 +159,14 @@ class SampledLowPass(NamedTuple):
 @lru_cache
 def _unit_poles(order: int) -> Complex:
     return np.asarray(butter(order, 1.0, analog=True, output="zpk")[1], dtype=np.complex128)
+
+
+@lru_cache
+def _transfer_function(low_pass: LowPass, rate: float) -> tuple[Real, Real]:
+    # The bilinear transformation bends high frequencies. What matters is the delay of low ones, which it leaves as it is.
+    bent = rate / np.pi * np.arctan(np.pi * low_pass.corner / rate)
+    numerator, denominator = butter(low_pass.order, bent, fs=rate)
+    return numerator, denominator
 
 
 def unexplained_squares(

@@ -14,7 +14,6 @@ from sprung.progress import Step
 from sprung.selection.contact import ON_THE_WAY, from_contact
 from sprung.selection.error_budget import MISFIT_LEFT, MISFIT_LEFT_AT_FIRST
 from sprung.selection.linear_terms import BENDING, TWIST
-from sprung.selection.low_pass import select_low_pass
 from sprung.selection.ordinary_vehicle import (
     ITERATIONS,
     fit_from_ordinary_vehicle,
@@ -92,7 +91,7 @@ def select_from_ordinary_vehicle(search: ModelSearch, plain: ModelStructure) -> 
         against = "together they do not explain what the model so far leaves"
         return search.recorded(dict.fromkeys(terms, 0.0), True, False, against)
     found = _without_unneeded(found)
-    return select_further_terms(select_low_pass(from_contact(found, enough=ON_THE_WAY)))
+    return select_further_terms(from_contact(found, enough=ON_THE_WAY))
 
 
 def _fit_ordinary(search: ModelSearch, rich: ModelStructure) -> ModelSearch | None:

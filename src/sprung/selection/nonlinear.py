@@ -13,7 +13,6 @@ from sprung.progress import Step
 from sprung.selection.contact import ON_THE_WAY, from_contact, is_likelier
 from sprung.selection.from_ordinary_vehicle import select_from_ordinary_vehicle
 from sprung.selection.linear_terms import ENGINE
-from sprung.selection.low_pass import select_low_pass
 from sprung.selection.scoring import score_terms
 from sprung.selection.search import ModelSearch
 from sprung.selection.stepwise import rank_terms, select_further_terms, try_likeliest
@@ -89,4 +88,4 @@ def _from_base(base: ModelSearch, terms: Sequence[str]) -> ModelSearch:
     found = try_likeliest(base, terms)
     if found.structure.names == base.structure.names:
         return found
-    return select_further_terms(select_low_pass(from_contact(found, enough=ON_THE_WAY)))
+    return select_further_terms(from_contact(found, enough=ON_THE_WAY))

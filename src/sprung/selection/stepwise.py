@@ -87,7 +87,7 @@ def select_further_terms(search: ModelSearch) -> ModelSearch:
     -------
     ModelSearch
     """
-    before = search
+    search = before = select_low_pass(search)
     tried: set[str] = set()
     for _ in range(_FURTHER_ROUNDS):
         if not search.structure.is_nonlinear or not search.is_overdispersed:

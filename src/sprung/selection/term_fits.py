@@ -182,8 +182,9 @@ def _refined(search: ModelSearch, larger: ModelStructure, first: FitResult) -> t
     if search.leaves_misfit(first, MISFIT_LEFT_BESIDE):
         return larger, first
     added = {*larger.terms} - {*search.structure.terms}
-    refining = [term for term in search.structure.open_terms if TERMS[term].refines in added - {term}]
-    models = [larger.with_terms((*larger.terms, term)) for term in refining if not TERMS[term].on_request]
+    beside = replace(search, structure=larger)
+    refining = [term for term in beside.open_terms(tuple(TERMS)) if TERMS[term].refines in added]
+    models = [beside.with_terms([term]) for term in refining]
     fits = [
         fit_structure(one, search.decays, first, NEAR, search.progress, beginning_only=True, most=_FIRST_ITERATIONS)
         for one in models
