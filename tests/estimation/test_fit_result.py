@@ -133,9 +133,10 @@ def test_friction_cannot_be_followed_backward(stepped: FitResult) -> None:
 
 def test_one_drop_of_a_stepped_fit_is_that_drop(stepped: FitResult) -> None:
     alone = stepped.iterate.at.of_drop(2)
-    np.testing.assert_allclose(alone.residual_sums[0], stepped.residual_sums[2], rtol=1e-9)
-    # Forces at the end of a step are solved to 1e-6 for all drops together: alone, one evaluation fewer may suffice.
-    np.testing.assert_allclose(alone.gradient, stepped.iterate.at.by_drop[0][2], rtol=1e-6)
+    # Segments of a motion are followed until they meet to 1e-6; forces are solved to 1e-7 for all drops together: alone, one
+    # evaluation fewer may suffice.
+    np.testing.assert_allclose(alone.residual_sums[0], stepped.residual_sums[2], rtol=1e-6)
+    np.testing.assert_allclose(alone.gradient, stepped.iterate.at.by_drop[0][2], rtol=1e-5)
 
 
 @pytest.mark.slow

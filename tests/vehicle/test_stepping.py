@@ -23,6 +23,7 @@ from sprung.vehicle import (
     differentiate_motions,
     free_decay,
     ground_contact_elements,
+    NearbyMotion,
     integrate_near,
     linear_elements,
     nonlinear_elements,
@@ -299,10 +300,10 @@ def test_motions_near_to_others_are_those_of_the_steps(extras: tuple[str, ...]) 
     starts = np.concatenate([sequential.states[first], sequential.memories[first]], axis=2)
     for size in (1e-5, 3e-3, 1.0):
         there = stepper(extras, 0.002, values * (1 + size * np.cos(np.arange(len(names)))))
-        near = np.swapaxes(starts, 0, 1), transitions
+        near = NearbyMotion(np.swapaxes(starts, 0, 1), transitions, sequential.forces)
         expected = there.integrate(states, memories, 301)
         # Forces at the end of a step are corrected only so often, those at the start of a segment once more.
-        for one, other in zip(integrate_near(there, states, memories, 301, 2, *near), expected, strict=True):
+        for one, other in zip(integrate_near(there, states, memories, 301, 2, near), expected, strict=True):
             np.testing.assert_allclose(one, other, atol=1e-6 * np.abs(other).max(initial=0.0))
 
 

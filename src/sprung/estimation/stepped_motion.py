@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import Stepper, Trajectory, differentiate_motions, segments_of
+from sprung.vehicle import NearbyMotion, Stepper, Trajectory, differentiate_motions, segments_of
 
 if TYPE_CHECKING:
     from sprung.estimation.time_stepping import TimeSteppingObjective
@@ -45,21 +45,15 @@ class SteppedMotion:
     stepper: Stepper
     trajectory: Trajectory
 
-    def predict(self, change: Real) -> tuple[Real, Real]:
-        """Predict the motions after a small change of the model's parameters and initial states, shape (drop, unknown).
-
-        Returns
-        -------
-        starts, transitions
-            As `integrate_near` takes them.
-        """
+    def predict(self, change: Real) -> NearbyMotion:
+        """Predict the motions after a small change of the model's parameters and initial states, shape (drop, unknown)."""
         _, by_unknown, transitions = self.linearised
         steps = len(self.trajectory.states) - 1
         number, length = segments_of(steps, self.objective.every)
         first = np.minimum(np.arange(number) * length, steps)
         starts = np.concatenate([self.trajectory.states[first], self.trajectory.memories[first]], axis=-1)
         moved = np.swapaxes(starts, 0, 1) + np.einsum("dsiu,du->dsi", by_unknown, change, optimize=True)
-        return moved, transitions
+        return NearbyMotion(moved, transitions, self.trajectory.forces)
 
     def _inputs(self, every: int) -> Real:
         """Return {X, Ẋ, u, 1} of one in so many steps, shape (time, drop, input)."""

@@ -22,6 +22,7 @@ from sprung.estimation.stepped_motion import SteppedMotion
 from sprung.preprocess import FreeDecay
 from sprung.vehicle import (
     ElementInput,
+    NearbyMotion,
     NonlinearModel,
     Readout,
     Stepper,
@@ -214,7 +215,7 @@ class TimeSteppingObjective:
         return self.at_states(values, weights, begin)
 
     def at_states(
-        self, values: Real, weights: Real, begin: Real, near: tuple[Real, Real] | None = None
+        self, values: Real, weights: Real, begin: Real, near: NearbyMotion | None = None
     ) -> TimeSteppingAt:
         """Evaluate with initial states and memories from where the empty vehicle rests, shape (drop, state + memory).
 
@@ -226,7 +227,7 @@ class TimeSteppingObjective:
         if near is None:
             trajectory = stepper.integrate(states, memories, steps)
         else:
-            trajectory = integrate_near(stepper, states, memories, steps, self.every, *near)
+            trajectory = integrate_near(stepper, states, memories, steps, self.every, near)
         return TimeSteppingAt(SteppedMotion(self, values, begin, stepper, trajectory), weights)
 
     def sag(self, values: Real) -> Real:

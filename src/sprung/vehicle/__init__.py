@@ -76,7 +76,7 @@ from sprung.vehicle.parameters import (
 )
 from sprung.vehicle.readout import Readout, sensor_rows
 from sprung.vehicle.response import Motion, affine_response, after_rest, free_decay
-from sprung.vehicle.segments import integrate_near, segments_of
+from sprung.vehicle.segments import NearbyMotion, integrate_near, segments_of
 from sprung.vehicle.sensitivities import differentiate_motions
 from sprung.vehicle.sensor import PADS, Sensor, SensorPlace, uncertainties_of
 from sprung.vehicle.stepping import StepDrive, Stepper, Trajectory
@@ -126,6 +126,7 @@ __all__ = [
     "Load",
     "Matrices",
     "Motion",
+    "NearbyMotion",
     "NonlinearElement",
     "NonlinearForces",
     "NonlinearModel",

@@ -10,6 +10,9 @@ H. G. Bock, Springer Series in Chemical Physics 18 (1981) 102.
 
 from __future__ import annotations
 
+import math
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -23,8 +26,26 @@ _SEGMENTS = 16
 _MOST_PASSES = 9
 """Passes through the segments at the most: more would take longer than following whole motions."""
 
-_CLOSED = 1e-10
-"""Gap between segments, as a part of the largest state, that is none."""
+_CLOSED = 1e-6
+"""Gap between segments, as a part of the largest state, that is none: less is below what the forces of a step are solved to."""
+
+
+class NearbyMotion(NamedTuple):
+    """What is known of motions from others nearby.
+
+    Attributes
+    ----------
+    starts
+        State and memories at the start of each segment, SI and dimensionless, shape (drop, segment, start).
+    transitions
+        The end of each segment by its start, SI, shape (drop, segment, start, start).
+    forces
+        Of the rows of the nonlinear elements, N, shape (step + 1, drop, row).
+    """
+
+    starts: Array
+    transitions: Array
+    forces: Array
 
 
 def segments_of(steps: int, every: int) -> tuple[int, int]:
@@ -48,7 +69,7 @@ def segments_of(steps: int, every: int) -> tuple[int, int]:
 
 
 def integrate_near(
-    stepper: Stepper, states: Array, memories: Array, steps: int, every: int, starts: Array, transitions: Array
+    stepper: Stepper, states: Array, memories: Array, steps: int, every: int, near: NearbyMotion
 ) -> Trajectory:
     """Integrate motions from their initial states that are known roughly.
 
@@ -62,11 +83,8 @@ def integrate_near(
         How many.
     every
         Steps from one sample to the next.
-    starts
-        State and memories at the start of each segment, as far as they are known, SI and dimensionless, shape (drop, segment,
-        start).
-    transitions
-        The end of each segment by its start, SI, shape (drop, segment, start, start).
+    near
+        What is known of them.
 
     Returns
     -------
@@ -75,7 +93,7 @@ def integrate_near(
     """
     number, length = segments_of(steps, every)
     slots, (kind, slot) = stepper.slots, stepper.places
-    starts, state = starts.copy(), states.shape[1]
+    starts, state = near.starts.copy(), states.shape[1]
     starts[:, 0] = np.concatenate([states, memories], axis=1)
     scale = np.maximum(np.abs(starts).max(axis=(0, 1)), np.finfo(float).tiny)
 
@@ -84,14 +102,18 @@ def integrate_near(
         split = values.reshape(*values.shape[:2], slots.shape[1], number, values.shape[3])
         return np.moveaxis(split, 0, 3)[kind, slot]
 
+    times = np.minimum(np.arange(length + 1)[:, None] + length * np.arange(number), steps)
+    similar = np.moveaxis(near.forces[times][:, :, slots], 1, 3)
+    similar = similar.reshape(*similar.shape[:2], -1, similar.shape[4])
     error = 1.0
     for left in reversed(range(_MOST_PASSES)):
         begin = starts[slots].reshape(len(slots), -1, starts.shape[2])
-        motions, kept = stepper.follow(begin[..., :state], begin[..., state:], length)
+        motions, kept = stepper.follow(begin[..., :state], begin[..., state:], length, similar=similar)
+        similar = motions[..., state:-1]
         ends = by_drop(np.concatenate([motions[-1:, ..., :state], kept[-1:]], axis=3))[:, :, 0]
         changes = np.zeros_like(starts)
         for segment in range(number - 1):
-            moved = transitions[:, segment] @ changes[:, segment, :, None]
+            moved = near.transitions[:, segment] @ changes[:, segment, :, None]
             changes[:, segment + 1] = ends[:, segment] - starts[:, segment + 1] + moved[..., 0]
         previous, error = error, float(np.max(np.abs(changes) / scale))
         if error <= _CLOSED:
@@ -101,7 +123,7 @@ def integrate_near(
             )
             return Trajectory(whole[..., :state], whole[..., state:-1], memory)
         # Further passes reduce the error as this one did.
-        if not error * (error / previous) ** left <= _CLOSED:
+        if not math.log(error) + left * math.log(error / previous) <= math.log(_CLOSED):
             break
         starts = starts + changes
-    return stepper.integrate(states, memories, steps)
+    return stepper.integrate(states, memories, steps, similar=near.forces)

@@ -23,7 +23,7 @@ Index = NDArray[np.int64]
 _MOST_EVALUATIONS = 12
 """Evaluations of the forces at the end of each step, at the most: mostly two are enough."""
 
-_SOLVED = 1e-6
+_SOLVED = 1e-7
 """Difference of forces from those that they were evaluated with, as a part of the largest, that is none."""
 
 
@@ -154,7 +154,9 @@ class Stepper:
         found: Array = self.by_state @ self.by_force + self.directly_by_force
         return found
 
-    def integrate(self, states: Array, memories: Array, steps: int, drive: StepDrive | None = None) -> Trajectory:
+    def integrate(
+        self, states: Array, memories: Array, steps: int, drive: StepDrive | None = None, similar: Array | None = None
+    ) -> Trajectory:
         """Integrate motions from their initial states.
 
         Parameters
@@ -167,6 +169,8 @@ class Stepper:
             How many.
         drive
             What moves the vehicle from outside.
+        similar
+            Forces of similar motions, N, shape (step + 1, drop, row): they save evaluations.
 
         Returns
         -------
@@ -175,11 +179,15 @@ class Stepper:
         """
         slots, (kind, slot) = self.slots, self.places
         driven = None if drive is None else StepDrive(*(part[:, slots] for part in drive))
-        whole, kept = self.follow(states[slots], memories[slots], steps, driven)
+        whole, kept = self.follow(
+            states[slots], memories[slots], steps, driven, None if similar is None else similar[:, slots]
+        )
         state = states.shape[1]
         return Trajectory(whole[:, kind, slot, :state], whole[:, kind, slot, state:-1], kept[:, kind, slot])
 
-    def follow(self, states: Array, memories: Array, steps: int, drive: StepDrive | None = None) -> tuple[Array, Array]:
+    def follow(
+        self, states: Array, memories: Array, steps: int, drive: StepDrive | None = None, similar: Array | None = None
+    ) -> tuple[Array, Array]:
         """Follow motions that are arranged by kind.
 
         Parameters
@@ -188,8 +196,8 @@ class Stepper:
             As for `integrate`, shapes (kind, motion, state) and (kind, motion, memory).
         steps
             How many.
-        drive
-            What moves the vehicle from outside, arranged likewise.
+        drive, similar
+            What moves the vehicle from outside, and forces of similar motions, arranged likewise.
 
         Returns
         -------
@@ -209,21 +217,25 @@ class Stepper:
         motions = np.ones((steps + 1, *shape, state + rows + 1))
         kept = np.empty((steps + 1, *shape, forces.memories))
         motions[0, ..., :state], kept[0] = states, memories
+        # Forces are expected to go on as straight as they do, but for what those of the similar motions turn there.
+        alike = np.zeros((steps + 1, *shape, rows)) if similar is None else similar
+        turns = np.diff(alike, 2, axis=0, prepend=alike[:1])
         predicted = np.empty((*shape, state + 2 * rows))
         with np.errstate(over="ignore", invalid="ignore"):
             by_state = _transposed(self.by_state)
             at_start = states @ by_state + self.inputs[:, None, :, -1]
             if drive is not None:
                 at_start += drive.inputs[0]
-            held, force = _feedback(self.directly_by_force, forces), np.zeros((*shape, rows))
-            found, travel = self._solve(at_start, at_start[..., :rows], memories, force, held)
+            held = _feedback(self.directly_by_force, forces)
+            found, travel = self._solve(at_start, at_start[..., :rows], memories, alike[0], held)
             force = before = motions[0, ..., state:-1] = found.force
             for k in range(steps):
                 np.matmul(motions[k], predictor, out=predicted)
                 if drive is not None:
                     predicted[..., :state] += drive.increments[k]
                     predicted[..., state:] += drive.increments[k] @ by_state + drive.inputs[k + 1]
-                found, travel = self._solve(predicted[..., state:], travel, kept[k], 2 * force - before, feedback)
+                expected = 2 * force - before + turns[k]
+                found, travel = self._solve(predicted[..., state:], travel, kept[k], expected, feedback)
                 before, force, end = force, found.force, motions[k + 1]
                 end[..., state:-1], kept[k + 1] = force, found.memory
                 np.add(predicted[..., :state], force @ by_force, out=end[..., :state])
@@ -261,11 +273,16 @@ class Stepper:
             error = found.force - force
             if not left or not np.abs(error).max(initial=0.0) > _SOLVED * np.abs(found.force).max(initial=0.0):
                 break
-            # Newton's correction takes the effect of a force on its own travel and rate; on the others' it is less still.
+            # Newton's correction takes the effect of a force on its own travel and rate first, then that of all on all others.
             slope = found.by_travel * own_travel + found.by_rate * own_rate
             if len(memory_rows):
                 slope[..., memory_rows] += found.by_memory * found.memory_by_travel * memory_travel
             correction = error / (1.0 - slope)
+            moved = correction @ by_force
+            answer = found.by_travel * moved[..., :rows] + found.by_rate * moved[..., rows:]
+            if len(memory_rows):
+                answer[..., memory_rows] += found.by_memory * found.memory_by_travel * moved[..., memory_rows]
+            correction += (error + answer - correction) / (1.0 - slope)
             if earlier is not None:
                 # Where a kink lies between, Newton's method may go back and forth: the secant does not.
                 passed = error * earlier[1] < 0
