@@ -214,9 +214,7 @@ class TimeSteppingObjective:
         begin[:, : self.states.shape[1]] += self.states[:, : begin.shape[1]]
         return self.at_states(values, weights, begin)
 
-    def at_states(
-        self, values: Real, weights: Real, begin: Real, near: NearbyMotion | None = None
-    ) -> TimeSteppingAt:
+    def at_states(self, values: Real, weights: Real, begin: Real, near: NearbyMotion | None = None) -> TimeSteppingAt:
         """Evaluate with initial states and memories from where the empty vehicle rests, shape (drop, state + memory).
 
         What is known of the motions, as from `SteppedMotion.predict`, saves time.
