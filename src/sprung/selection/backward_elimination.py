@@ -120,9 +120,15 @@ def leave_out_unneeded(
     return tried, {}
 
 
+def counterpart_of(search: ModelSearch, term: str) -> str:
+    """Return what a term of the model has been taken for; empty where it is of its kind, or nothing moves alike."""
+    row = TERMS[term]
+    return row.counterpart if row.is_something_else(search.fit.parameters) else ""
+
+
 def _with_counterpart(search: ModelSearch, term: str) -> ModelStructure:
     """Return the structure without a term; with its counterpart, where that is what the term has been taken for."""
-    smaller, row = search.without(term), TERMS[term]
-    if row.counterpart in search.open_terms(tuple(TERMS)) and row.is_something_else(search.fit.parameters):
-        return smaller.with_terms((*smaller.terms, row.counterpart))
+    smaller, counterpart = search.without(term), counterpart_of(search, term)
+    if counterpart in search.open_terms(tuple(TERMS)):
+        return smaller.with_terms((*smaller.terms, counterpart))
     return smaller

@@ -48,7 +48,7 @@ _NEGLIGIBLE_BRANCH = 0.01
 
 _MOST_LOSS = 0.008
 """s: damping of a rubber mount over its rate, at the most. With more, a damper behind a mount moves as one beside a Zener
-branch: their forces are the same function of frequency."""
+branch, and with less the other way round: their forces are the same function of frequency."""
 
 _MOST_RELAXATION = 0.5
 """s in which rubber relaxes, at the most, ten times what is usual: slower branches are drift of sensors."""
@@ -91,12 +91,17 @@ def _gravity(values: Values) -> float:
 
 
 def _relaxation_times(values: Values) -> list[float]:
-    """Relaxation times of the Zener branches that matter, s, without sign: a negative rate is another matter."""
-    return [
-        abs(values[f"c_z{axle}"] / values[f"k_z{axle}"])
-        for axle in axles_of(values)
-        if abs(values[f"k_z{axle}"]) >= _NEGLIGIBLE_BRANCH * values[f"k_s{axle}"]
-    ]
+    """Relaxation times of the Zener branches that matter, s, and what damping over rate they had as mounts of dampers.
+
+    Without sign: a negative rate is another matter. A damper c_s beside a branch moves as one of c_s + c_z behind a mount,
+    whose damping over its rate is c_s/(c_s + c_z) of the relaxation time.
+    """
+    times = []
+    for axle in axles_of(values):
+        damping, branch, rate = (abs(values[f"{kind}{axle}"]) for kind in ("c_s", "c_z", "k_z"))
+        if rate >= _NEGLIGIBLE_BRANCH * values[f"k_s{axle}"]:
+            times += [branch / rate, branch / rate * damping / (damping + branch)]
+    return times
 
 
 def _interconnection(values: Values, part: float) -> Values:
@@ -262,7 +267,8 @@ LINEAR_TERMS = (
         ),
         held="c_z",
         character=_relaxation_times,
-        band=(0.0, _MOST_RELAXATION),
+        band=(_MOST_LOSS, _MOST_RELAXATION),
+        counterpart="damper-mount",
         undefined=lambda own, _: {
             name: _ALMOST_NONE * value for name, value in usual_rubber(own).items() if name.startswith(("k_z", "c_z"))
         },

@@ -40,6 +40,9 @@ ITERATIONS = 22
 _HELD = 1.1
 """Factor within which a parameter is held that means little where its term is small."""
 
+_VIBRATES = ("m_", "I_", "k_", "c_")
+"""First letters of the parameters by which a part that vibrates finds its frequency and damping: the others are its shape."""
+
 
 def ordinary_vehicle(structure: ModelStructure) -> tuple[dict[str, float], dict[str, UsualValue]]:
     """Return an ordinary vehicle with the terms of a structure, each of its usual size.
@@ -137,14 +140,24 @@ def fit_from_ordinary_vehicle(search: ModelSearch, structure: ModelStructure) ->
 
     Notes
     -----
-    The wheels first keep the masses of the ordinary vehicle: far from the recordings a fit gains most by shifting mass between
-    body and wheels, and does not come back.
+    The wheels first keep the masses of the ordinary vehicle, a part that vibrates by itself its shape or place, and the
+    sensors read what they should: far from the recordings a fit gains most by shifting mass between body and wheels, by a mode of
+    any shape, or by gains many times beyond their uncertainty, and does not come back.
     """
     values, _ = ordinary_vehicle(structure)
     models, sensors, known = structure.linear_models, structure.sensors, structure.known
-    wheels = {
-        name: KnownValue(values[name]) for name in structure.names if name.startswith("m_u") and name not in known
+    parts = [
+        name
+        for term in structure.terms
+        if TERMS[term].explains_all
+        for name in TERMS[term].parameters(structure.tracks, structure.layout)
+    ]
+    first = {
+        name: KnownValue(values[name])
+        for name in structure.names
+        if name.startswith("m_u") or (name in parts and not name.startswith(_VIBRATES))
     }
-    held = fit_linear(search.decays, models, sensors, {**known, **wheels}, start=values, enough=NEAR, most=ITERATIONS)
+    exact = [sensor.exact for sensor in sensors]
+    held = fit_linear(search.decays, models, exact, {**first, **known}, start=values, enough=NEAR, most=ITERATIONS)
     fit = fit_linear(search.decays, models, sensors, known, start=held.parameters, enough=NEAR, most=ITERATIONS)
     return replace(search, structure=structure, fit=fit.after(search.fit))

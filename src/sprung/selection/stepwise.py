@@ -11,7 +11,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import replace
 
 from sprung.estimation import FitResult
-from sprung.selection.backward_elimination import leave_out_unneeded
+from sprung.selection.backward_elimination import counterpart_of, leave_out_unneeded
 from sprung.selection.contact import from_contact
 from sprung.selection.error_budget import MISFIT_LEFT_BY_ALL
 from sprung.selection.low_pass import confirm_low_pass, select_low_pass
@@ -279,5 +279,6 @@ def try_term(
         tried = select_linear_terms(tried, others)
         against = "it does not explain the whole misfit" if search.leaves_misfit(tried.fit, MISFIT_LEFT_BY_ALL) else ""
     if against:
-        return search.recorded({term: gain}, True, False, against)
+        refused, counterpart = search.recorded({term: gain}, True, False, against), counterpart_of(tried, term)
+        return try_term(refused, counterpart, among) if counterpart in refused.open_terms(among) else refused
     return leave_out_unneeded(tried, search, keep=term)[0]

@@ -14,8 +14,12 @@ of Human Vibration, 1990)."""
 SEAT_LOSS = 2 * _SEAT_DAMPING * 2 * np.pi * SEAT_FREQUENCY
 """Damping of a seat over the mass on it, 1/s."""
 
-_MODAL_INERTIA, _MODAL_MASS, _BODY_DAMPING = 0.08, 0.6, 0.03
-"""Modal inertia of a usual twist over I_xx, modal mass of a usual bending over m_s, and damping ratio of both."""
+_MODAL_INERTIA, _BODY_DAMPING = 0.08, 0.03
+"""Modal inertia of a usual twist over I_xx, and damping ratio of twist and bending."""
+
+_MODAL_MASS, _MEAN_RISE = 4 / 45, 2 / 3
+"""Modal mass of a usual bending over m_s, and how far the centre of gravity rises with the middle of the body: those of a
+parabola over a body of uniform mass between its axles."""
 
 
 def natural_frequency(rate: float, mass: float) -> float:
@@ -34,7 +38,7 @@ def usual_bending(own: Values, structure: ModelStructure, factor: float = 1.0) -
     """Return a usual bending of the body, its modal mass multiplied by a factor."""
     mass, omega = factor * _MODAL_MASS * own["m_s"], 2 * np.pi * structure.body_frequency
     rates = {"m_v": mass, "k_v": mass * omega**2, "c_v": 2 * _BODY_DAMPING * mass * omega}
-    return {**rates, "b_v": 0.3, "p_v": 0.0}
+    return {**rates, "b_v": _MEAN_RISE, "p_v": 0.0}
 
 
 def usual_occupants(own: Values, structure: ModelStructure, share: float = USUAL_OCCUPANTS) -> Values:
