@@ -141,8 +141,8 @@ def fit_from_ordinary_vehicle(search: ModelSearch, structure: ModelStructure) ->
     Notes
     -----
     The wheels first keep the masses of the ordinary vehicle, a part that vibrates by itself its shape or place, and the
-    sensors read what they should: far from the recordings a fit gains most by shifting mass between body and wheels, by a mode of
-    any shape, or by gains many times beyond their uncertainty, and does not come back.
+    sensors read what they should: far from the recordings a fit gains most by shifting mass between body and wheels, by a mode
+    of any shape, or by gains many times beyond their uncertainty, and does not come back.
     """
     values, _ = ordinary_vehicle(structure)
     models, sensors, known = structure.linear_models, structure.sensors, structure.known

@@ -39,7 +39,7 @@ _EXPLAINED = 0.7
 _RIVALS, _RIVAL_SCORE = 2, 0.5
 """How many terms are fitted beside one that leaves a misfit, and their scores at the least, as a part of its score."""
 
-_FURTHER_ROUNDS, _TRIED_BESIDE = 5, 2
+_FURTHER_ROUNDS, _TRIED_BESIDE = 8, 2
 """How many times terms are looked for beside nonlinear ones, and how many are fitted each time until one is accepted."""
 
 
@@ -87,31 +87,46 @@ def select_further_terms(search: ModelSearch) -> ModelSearch:
     -------
     ModelSearch
     """
-    search = before = select_low_pass(search)
     tried: set[str] = set()
     for _ in range(_FURTHER_ROUNDS):
         if not search.structure.is_nonlinear or not search.is_overdispersed:
             break
-        terms = [term for term in search.open_terms(tuple(TERMS)) if term not in tried]
-        # No score tells anything of a stationary term: it is fitted, and so are those that refine the same.
-        refined = {TERMS[term].refines for term in terms if TERMS[term].is_stationary}
-        rivals = [term for term in terms if TERMS[term].refines in refined]
-        if rivals:
-            search = try_likeliest(search, rivals)
-            tried |= {*rivals}
-            continue
-        _, scores = score_terms(search, terms)
-        ratios = {term: gain / (search.required(term) * search.overdispersion) for term, (gain, _) in scores.items()}
-        best = sorted((term for term in terms if ratios[term] > 1), key=lambda term: -ratios[term])[:_TRIED_BESIDE]
-        tried |= {*best}
-        search, accepted = accept_first(search, best)
-        if not accepted:
+        before = search
+        search = _try_scored(search, tried)
+        if search.structure is before.structure:
+            # A low-pass resembles knees, and so does whatever else is missing: it is looked for once nothing else shows.
+            search = select_low_pass(search)
+        if search.structure is before.structure:
+            search = _try_rivals(search, tried)
+        if search.structure is before.structure:
             break
-    if search.structure.low_pass is not None:
-        return search if search.structure.names == before.structure.names else confirm_low_pass(search)
-    # What a low-pass does may show only once nothing larger is left, and further terms once it is there.
-    behind = select_low_pass(search)
-    return search if behind is search else select_further_terms(behind)
+    return search
+
+
+def _try_scored(search: ModelSearch, tried: set[str]) -> ModelSearch:
+    """Try terms by their scores until one is accepted, but for those that no score tells from others."""
+    open_terms = [term for term in search.open_terms(tuple(TERMS)) if term not in tried]
+    terms = [term for term in open_terms if term not in _rivals(open_terms)]
+    _, scores = score_terms(search, terms)
+    ratios = {term: gain / (search.required(term) * search.overdispersion) for term, (gain, _) in scores.items()}
+    best = sorted((term for term in terms if ratios[term] > 1), key=lambda term: -ratios[term])[:_TRIED_BESIDE]
+    tried |= {*best}
+    found, accepted = accept_first(search, best)
+    return confirm_low_pass(found) if accepted else found
+
+
+def _try_rivals(search: ModelSearch, tried: set[str]) -> ModelSearch:
+    """Fit the terms that no score tells from each other, and accept the likeliest if it is needed."""
+    rivals = _rivals([term for term in search.open_terms(tuple(TERMS)) if term not in tried])
+    tried |= {*rivals}
+    found = try_likeliest(search, rivals) if rivals else search
+    return found if found.structure is search.structure else confirm_low_pass(found)
+
+
+def _rivals(terms: Sequence[str]) -> list[str]:
+    """Return the terms that are stationary, which no score shows, and those that refine the same."""
+    refined = {TERMS[term].refines for term in terms if TERMS[term].is_stationary}
+    return [term for term in terms if TERMS[term].refines in refined]
 
 
 def rank_terms(search: ModelSearch, scores: Scores, weight: float) -> tuple[ModelSearch, list[str]]:

@@ -196,8 +196,10 @@ class Stepper:
             As for `integrate`, shapes (kind, motion, state) and (kind, motion, memory).
         steps
             How many.
-        drive, similar
-            What moves the vehicle from outside, and forces of similar motions, arranged likewise.
+        drive
+            What moves the vehicle from outside, arranged likewise.
+        similar
+            Forces of similar motions, N, shape (step + 1, kind, motion, row).
 
         Returns
         -------
