@@ -10,6 +10,7 @@ import sprung
 from sprung.campaign import Drop
 from sprung.errors import InputError
 from sprung.preprocess import find_flights, prepare
+from sprung.preprocess.end_of_drive import DIES_AWAY
 from sprung.preprocess.passage import measure_delay
 from sprung.simulation import Acting, Bump, Push
 from sprung.vehicle import EMPTY, TABLE_1_CAR, Vehicle, Wheel
@@ -47,6 +48,14 @@ def test_a_decay_begins_when_the_motion_dies_away(excitation: str, push: str, bu
         assert decay.start - decay.earlier.shape[1] / decay.rate <= start
         assert decay.events.release == pytest.approx(0.4, abs=0.1)
         assert decay.rest.noise.std(axis=1) == pytest.approx(0.02, rel=0.3)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_who_pushes_a_side_by_hand_has_not_let_go_of_it_at_once(seed: int) -> None:
+    """Wheels hardly move then: what is noise, or rises slowly, does not show a held body (5 of 12 seeds once did)."""
+    drops = [{"excitation": "push", "wheels": list(side)} for side in (("fl", "rl"), ("fr", "rr"))]
+    prepared = prepare(sprung.simulate(TABLE_1_CAR, drops=drops, noise=0.02, seed=seed))
+    assert all(decay.events.why_start == DIES_AWAY for decay in prepared.decays)
 
 
 def test_nothing_fell() -> None:

@@ -39,8 +39,11 @@ _GOES_ON, _CHANGED = 0.01, 0.6
 something still drives the vehicle: a mode with a damping ratio of 0.05 keeps half its power over a period."""
 
 _AT_ONCE, _JUMP = 0.02, 0.7
-"""s after its first motion within which a body that is let go is accelerated most, and the part of the largest reading at
+"""s about its first motion within which a body that is let go is accelerated most, and the part of the largest reading at
 least; who pushes by hand begins slowly."""
+
+_ABOVE_NOISE = 10.0
+"""Largest motion over the noise from which a channel shows how it began."""
 
 LET_GO = "the body was let go"
 """Why a decay after a pull with a rope, or after a lift, begins with the first motion."""
@@ -93,17 +96,32 @@ def detect_end_of_drive(drop: DropTest, release: Release | None, clipped: Flags,
             )
             return Fault("no-decay", recording.name, what, _REMEDIES[drop.excitation])
     first = 0 if release is None else release.sample
-    if drop.excitation == "push" and first and any(_is_let_go(channel, rate) for channel in moved[clear, first:]):
+    noise = np.sqrt(least).tolist()
+    if (
+        drop.excitation == "push"
+        and first
+        and any(_is_let_go(own, first, rate, std) for own, std in zip(moved[clear], noise, strict=True))
+    ):
         return Landing(first, first, LET_GO)
     possible = max(first, int(np.flatnonzero(clipped.any(axis=0))[-1]) + 1 if clipped.any() else 0)
     return Landing(min(possible, samples), min(max(possible, free), samples), DIES_AWAY)
 
 
-def _is_let_go(moved: Real, rate: float) -> bool:
-    """Whether the first motion of a channel is about its largest, shape (time,): a held body's displacement is, at once."""
-    width = max(round(_AT_ONCE * rate), 2)
-    smooth = np.abs(uniform_filter1d(moved, max(width // 2, 1), mode="nearest"))
-    return float(smooth[:width].max()) > _JUMP * float(smooth.max())
+def _is_let_go(moved: Real, first: int, rate: float, noise: float) -> bool:
+    """Whether a channel, shape (time,), begins at a sample about as far from its level at the end as it ever is.
+
+    A displacement has been there while the body was held; an acceleration jumps there. What rises slowly was pushed by hand,
+    and noise may be as large at any time as at another.
+    """
+    half = max(round(_AT_ONCE * rate / 2), 1)
+    smooth = np.abs(uniform_filter1d(moved, half, mode="nearest"))
+    largest, before, after = (
+        float(smooth[first:].max()),
+        float(smooth[max(first - half, 0)]),
+        smooth[first : first + half + 1],
+    )
+    is_held, jumps = before > _JUMP * largest, float(after.max()) - before > _JUMP * largest
+    return (is_held or jumps) and largest > _ABOVE_NOISE * noise / half**0.5
 
 
 def too_short(drop: DropTest, length: float, least: float) -> Fault:
