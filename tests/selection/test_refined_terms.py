@@ -12,8 +12,9 @@ from sprung.estimation import fit_linear
 from sprung.preprocess import prepare
 from sprung.selection import ModelSearch, choose_structure
 from sprung.selection.backward_elimination import leave_out_refused
+from sprung.selection.terms import TERMS
 from sprung.simulation import simulate
-from sprung.vehicle import REFINED, TABLE_1_CAR
+from sprung.vehicle import REFINED, TABLE_1_CAR, Vehicle
 
 BALLAST = {
     "name": "ballast",
@@ -68,3 +69,44 @@ def test_damping_of_mounts_is_found_where_it_is(loss: float) -> None:
         found = result.parameters[name]
         assert found.std is not None
         assert found.value == pytest.approx(getattr(car, name), abs=4 * found.std)
+
+
+def zener_of(car: Vehicle) -> dict[str, float]:
+    """Return the damper and the Zener branch beside the spring that move as a damper behind a mount with damping does.
+
+    Both are (k_d + c_d s) c/(k_d + (c + c_d) s), from rubber and damper in series, over the velocity.
+    """
+    found = dict(car.parameters)
+    for axle in "fr":
+        c, k_d, c_d = (car.parameters[f"{name}{axle}"] for name in ("c_s", "k_d", "c_d"))
+        fast = c * c_d / (c + c_d)
+        found |= {f"c_s{axle}": fast, f"c_z{axle}": c - fast, f"k_z{axle}": (c - fast) * k_d / (c + c_d)}
+    return found
+
+
+MOUNTED = TABLE_1_CAR.with_values(
+    k_df=8 * TABLE_1_CAR.k_sf, k_dr=8 * TABLE_1_CAR.k_sr, c_df=0.03 * TABLE_1_CAR.c_sf, c_dr=0.03 * TABLE_1_CAR.c_sr
+)
+
+
+@pytest.mark.parametrize("k_z", [0.1, 0.3])
+@pytest.mark.parametrize("time", [0.02, 0.2])
+def test_a_zener_branch_that_is_a_damper_behind_a_mount_is_something_else(k_z: float, time: float) -> None:
+    """Sizes and times of rubber beside springs are those that are usual (docs/studies/real_kinds.py)."""
+    assert TERMS["zener"].is_something_else(zener_of(MOUNTED))
+    rates = {f"k_z{axle}": k_z * TABLE_1_CAR.parameters[f"k_s{axle}"] for axle in "fr"}
+    branches = {f"c_z{axle}": time * rates[f"k_z{axle}"] for axle in "fr"}
+    assert not TERMS["zener"].is_something_else({**TABLE_1_CAR.parameters, **rates, **branches})
+
+
+@pytest.mark.slow
+def test_dampers_behind_mounts_are_not_taken_for_rubber_beside_the_springs() -> None:
+    """Two of 24 cars with mounts once got a Zener branch, and dampers of 6 % of their rate."""
+    known = {"total_mass": MOUNTED.total_mass}
+    result = sprung.identify(simulate(MOUNTED, rate=250.0, noise=0.02, seed=1, known=known))
+    assert result.verdict.state == "accept"
+    assert {*result.fit.model} == {"damper-mount", "mount-damping"}
+    for name in ("c_sf", "c_sr", "k_df", "k_dr", "c_df", "c_dr"):
+        found = result.parameters[name]
+        assert found.std is not None
+        assert found.value == pytest.approx(getattr(MOUNTED, name), abs=4 * found.std)
