@@ -30,7 +30,7 @@ _OPEN = LowPass(np.inf, _ORDER)
 _LOWEST = 25.0
 """Hz below which no logger cuts off the motion of wheels."""
 
-_ITERATIONS = 8
+_ITERATIONS = 3
 """Iterations at the most before corners are compared: a low-pass moves the optimum by little."""
 
 
