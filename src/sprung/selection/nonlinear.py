@@ -81,6 +81,10 @@ def _searches(search: ModelSearch, plain: ModelStructure, ranked: Sequence[str])
     gains = [step.gain > step.asked for step in search.steps if step.extra == ENGINE and step.fitted and not step.taken]
     if ranked and any(gains):
         yield lambda so_far: _from_base(fit_term(replace(simplest, steps=so_far.steps), ENGINE), ranked)
+    # A linear fit that has gone astray for the sake of friction, small motions' friction above all, shows no score of it.
+    hidden = [term for term in search.open_terms(tuple(TERMS)) if TERMS[term].resembles_others and term not in ranked]
+    if search.is_misfit_large and hidden:
+        yield lambda so_far: _from_base(replace(simplest, steps=so_far.steps), hidden)
 
 
 def _from_base(base: ModelSearch, terms: Sequence[str]) -> ModelSearch:
