@@ -5,12 +5,13 @@ Run with `python docs/studies/real_cars.py --campaigns 60 --processes 2`, or `no
 
 from __future__ import annotations
 
+import json
 import os
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -33,6 +34,7 @@ def main() -> None:
     parser = arguments("Real cars, from a simulator of its own.", campaigns=60)
     every = (*KINDS, *NO_VEHICLE)
     parser.add_argument("--kinds", nargs="+", choices=every, default=every, help="kinds of cars (default: all)")
+    parser.add_argument("--add", action="store_true", help="keep the kinds in real-cars.json that are not run")
     parser.add_argument("--limit", type=float, default=LIMIT, help="s of processor time for each (default %(default)g)")
     options = parser.parse_args()
     seeds = [range(i, min(i + TOGETHER, options.campaigns)) for i in range(0, options.campaigns, TOGETHER)]
@@ -42,12 +44,31 @@ def main() -> None:
         outcomes += some
         last = some[-1]
         report_progress(f"{last.kind} to {last.seed}: {', '.join(one.verdict for one in some)}")
-    drawn = draw(outcomes, options.to / "real-cars.svg")
     numbers = {
         "kinds": [document(_of(kind, outcomes)) for kind in options.kinds],
         "campaigns": [campaign_document(one) for one in outcomes],
     }
-    write(options.to, "real-cars", page(outcomes, options.campaigns, drawn), numbers)
+    if options.add:
+        numbers = merged(json.loads((options.to / "real-cars.json").read_text()), numbers)
+    drawn = draw(numbers, options.to / "real-cars.svg")
+    write(options.to, "real-cars", page(numbers, drawn), numbers)
+
+
+Numbers = Mapping[str, list[dict[str, Any]]]
+"""What the JSON file holds: the figures of each kind, and each campaign."""
+
+
+def merged(before: Numbers, added: Numbers) -> dict[str, list[dict[str, Any]]]:
+    """Return the figures of two runs, those of the later one where both have a kind, in the order of the table of kinds."""
+    new = {one["kind"] for one in added["kinds"]}
+    order = (*KINDS, *NO_VEHICLE)
+    return {
+        part: sorted(
+            [*(one for one in before[part] if one["kind"] not in new), *added[part]],
+            key=lambda one: order.index(one["kind"]),
+        )
+        for part in added
+    }
 
 
 def _of(kind: str, outcomes: Sequence[Outcome]) -> list[Outcome]:
@@ -119,16 +140,15 @@ def _over(statistic: Callable[[Sequence[float]], Any], values: Sequence[float]) 
     return float(statistic(there)) if there else np.nan
 
 
-def page(outcomes: Sequence[Outcome], campaigns: int, drawn: bool) -> str:
+def page(numbers: Numbers, drawn: bool) -> str:
     """Write the page."""
     head = ["car with", "campaigns", " / ".join(STATES), "false faults", "median error, %", "worst, %"]
     head += ["worst in standard errors", "covered, %", "damper curve, median and worst, %", "time, median and worst, s"]
-    kinds = dict.fromkeys(one.kind for one in outcomes)
-    rows = [_row(document(_of(kind, outcomes))) for kind in kinds if kind not in NO_VEHICLE]
-    others = [document(_of(kind, outcomes)) for kind in kinds if kind in NO_VEHICLE]
+    sound = [one for one in numbers["kinds"] if one["kind"] not in NO_VEHICLE]
+    rows = [_row(one) for one in sound]
+    others = [one for one in numbers["kinds"] if one["kind"] in NO_VEHICLE]
     refused = [[one["kind"], str(one["campaigns"]), _verdicts(one), _text(one["seconds_worst"])] for one in others]
-    sound = [one for one in outcomes if one.kind not in NO_VEHICLE]
-    accused = sum(bool(one.faults) for one in sound)
+    accused, tested = (sum(one[count] for one in sound) for count in ("with_false_faults", "campaigns"))
     picture = "\n![Worst error of each campaign](real-cars.svg)\n" if drawn else ""
     return f"""# Cars as they are
 
@@ -144,7 +164,7 @@ shares no equation with `sprung.vehicle`, and equals `sprung.simulate` within 1e
 car. Tall cars turn with finite angles (`real_rotations.py`). Each car was drawn at random from six types, all sizes
 log-uniform in the usual ranges (`real_kinds.py`).
 
-{campaigns} campaigns of each kind: ten drops from 5 cm (buses 7 cm), five with ballast; {RATE:g} samples per second; noise
+Each campaign: ten drops from 5 cm (buses 7 cm), five with ballast; {RATE:g} samples per second; noise
 {NOISE:g} m/s²; axle masses known within {WEIGHING:g} kg. The campaign file says nothing about the kind.
 
 *Usual* is everything at once that every car has: mount, curve, rubber, tyre, dry friction, sensors as they are. *Median error*
@@ -156,7 +176,7 @@ parameters are stated. The damper curve is compared from {SLOWEST:g} m/s to the 
 
 {table(head, rows)}
 
-Of {len(sound)} sound campaigns {accused} have a fault reported.
+Of {tested} sound campaigns {accused} have a fault reported.
 {picture}
 What no vehicle is, to be rejected: a wheel that strikes a stop after some play, a loose sensor that slaps, and recordings
 of two vehicles mixed.
@@ -167,7 +187,8 @@ Every parameter and every campaign is in [real-cars.json](real-cars.json).
 
 ## Reproduction
 
-    python docs/studies/real_cars.py --campaigns {campaigns} --processes 2
+    python docs/studies/real_cars.py --kinds plain --campaigns 200 --processes 2
+    python docs/studies/real_cars.py --kinds KIND ... --campaigns 60 --processes 2 --add
 """
 
 
@@ -194,19 +215,20 @@ def _text(value: float | None) -> str:
     return "-" if value is None else f"{value:.3g}"
 
 
-def draw(outcomes: Sequence[Outcome], path: Path) -> bool:
+def draw(numbers: Numbers, path: Path) -> bool:
     """Draw the worst error of each campaign by kind; False without matplotlib."""
     try:
         from matplotlib.figure import Figure  # noqa: PLC0415 (optional)
     except ImportError:
         return False
-    kinds = [kind for kind in dict.fromkeys(one.kind for one in outcomes) if kind not in NO_VEHICLE]
+    kinds = [one["kind"] for one in numbers["kinds"] if one["kind"] not in NO_VEHICLE]
     figure = Figure(figsize=(7.5, 0.6 + 0.32 * max(len(kinds), 1)), layout="constrained")
     axes = figure.subplots()
     colours = {"accept": "#2a6f97", "doubtful": "#edae49", "reject": "#d1495b"}
     for row, kind in enumerate(kinds):
         for state, colour in colours.items():
-            worst = [100 * one.worst[0] for one in _of(kind, outcomes) if one.verdict == state]
+            own = [one for one in numbers["campaigns"] if (one["kind"], one["verdict"]) == (kind, state)]
+            worst = [one["worst_percent"] for one in own if one["worst_percent"] is not None]
             axes.plot(worst, np.full(len(worst), row), "|", color=colour, markersize=9)
     axes.axvline(2.0, color="#888888", linewidth=0.8)
     axes.set(xscale="log", xlabel="error of the worst plain parameter, %", yticks=range(len(kinds)), yticklabels=kinds)
