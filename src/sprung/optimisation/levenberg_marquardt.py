@@ -197,7 +197,8 @@ def _gaining_step(
             return None
         tried, gain = problem.trial(point, step, of_eliminated)
         if gain >= 0:
-            ratio = gain / max(expected, np.finfo(float).tiny)
+            # More than a million times what was expected is as good as any.
+            ratio = gain / max(expected, 1e-6 * gain, np.finfo(float).tiny)
             return tried, _next_damping(damping, ratio), max(expected, gain)
         if first and np.isfinite(gain):
             back, _ = problem.normal_equations(tried).step(damping, longest)
