@@ -285,7 +285,7 @@ def try_term(
     if larger.is_nonlinear:
         tried, gains = leave_out_unneeded(tried, search)
         return tried.recorded(gains, True, True) if gains else replace(search, steps=tried.steps)
-    against = tried.veto(term)
+    against, counterpart = tried.veto(term), counterpart_of(tried, term)
     tried = tried.recorded({term: gain}, True, True)
     if not against and TERMS[term].explains_all and search.leaves_misfit(tried.fit, MISFIT_LEFT_BY_ALL):
         # Beside it a second one of its kind is looked for, a bending body beside people on seats, say; beside both, none.
@@ -294,6 +294,6 @@ def try_term(
         tried = select_linear_terms(tried, others)
         against = "it does not explain the whole misfit" if search.leaves_misfit(tried.fit, MISFIT_LEFT_BY_ALL) else ""
     if against:
-        refused, counterpart = search.recorded({term: gain}, True, False, against), counterpart_of(tried, term)
+        refused = search.recorded({term: gain}, True, False, against)
         return try_term(refused, counterpart, among) if counterpart in refused.open_terms(among) else refused
     return leave_out_unneeded(tried, search, keep=term)[0]
