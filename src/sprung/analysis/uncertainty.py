@@ -22,8 +22,8 @@ def estimate_uncertainty(run: Analysis, progress: Progress) -> Analysis:
     search = replace(search, fit=weigh_statements(search.fit))
     statistics = uncertainty_of(search.fit)
     if not search.structure.is_time_stepped:
-        determined = leave_out_undetermined(search, statistics)
-        if determined is not search:
+        # Without one term another one may be determined.
+        while (determined := leave_out_undetermined(search, statistics)) is not search:
             search = replace(determined, fit=weigh_statements(determined.fit))
             statistics = uncertainty_of(search.fit)
     refused = search.steps[len(run.model.steps) :]

@@ -51,7 +51,9 @@ def leave_out_refused(search: ModelSearch) -> ModelSearch:
 
 
 def leave_out_undetermined(search: ModelSearch, statistics: FitStatistics) -> ModelSearch:
-    """Return the search without terms of which a parameter is as uncertain as itself, all disagreement of the records counted.
+    """Return the search without the least missed term of which a parameter is as uncertain as itself.
+
+    All disagreement of the records is counted.
 
     Parameters
     ----------
@@ -63,6 +65,7 @@ def leave_out_undetermined(search: ModelSearch, statistics: FitStatistics) -> Mo
     Returns
     -------
     ModelSearch
+        As given where the records determine every term.
     """
     structure = search.structure
     # Where nothing was weighed the scale is unknown, which speaks against no term.
@@ -75,13 +78,17 @@ def leave_out_undetermined(search: ModelSearch, statistics: FitStatistics) -> Mo
         for name, std, value in zip(statistics.names, spreads.tolist(), statistics.values.tolist(), strict=True)
         if name in PARAMETERS and PARAMETERS[name].positive and std > abs(value)
     }
-    for term in search.selected:
-        missing = [name for name in TERMS[term].parameters(structure.tracks, structure.layout) if name in uncertain]
-        if missing and term in search.selected:
-            against = f"the recordings do not determine {', '.join(missing)}"
-            search = search.recorded({term: search.wald_gain(term)}, True, False, against)
-            search = search.refit(search.without(term))
-    return search
+    missing = {
+        term: [name for name in TERMS[term].parameters(structure.tracks, structure.layout) if name in uncertain]
+        for term in search.selected
+    }
+    gains = {term: search.wald_gain(term) for term, names in missing.items() if names}
+    if not gains:
+        return search
+    least = min(gains, key=lambda term: gains[term])
+    against = f"the recordings do not determine {', '.join(missing[least])}"
+    search = search.recorded({least: gains[least]}, True, False, against)
+    return search.refit(search.without(least))
 
 
 def leave_out_unneeded(
