@@ -124,6 +124,9 @@ def leave_out_unneeded(
         tried = tried.recorded({least: gains[least]}, True, False, against[least])
         smaller = _with_counterpart(tried, least)
         tried = replace(before, steps=tried.steps) if smaller.names == before.structure.names else tried.refit(smaller)
+        if least in before.selected and tried.delta_bic(before) < 0:
+            # A new term beside which an old one means nothing does not replace it unless it explains as much.
+            return replace(before, steps=tried.steps), {}
     return tried, {}
 
 
