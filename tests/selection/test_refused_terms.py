@@ -1,0 +1,35 @@
+"""A term that is refused after others have been tried beside it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import pytest
+
+from sprung.estimation import fit_linear
+from sprung.preprocess import prepare
+from sprung.selection import ModelSearch, choose_structure, stepwise
+from sprung.simulation import simulate
+from sprung.vehicle import TABLE_1_CAR
+
+
+def test_a_term_that_is_gone_beside_others_is_refused_without_being_asked_again(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """An engine seems to explain some of dry friction; the terms tried beside it leave it out (once a KeyError)."""
+    car = TABLE_1_CAR.with_values(F_f=30.0, F_r=30.0, s_f=2e5, s_r=2e5)
+    campaign = simulate(car, rate=250.0, noise=0.02, seed=1, known={"total_mass": car.total_mass})
+    plain, decays = choose_structure(campaign), prepare(campaign).decays
+    fit = fit_linear(decays, plain.linear_models, plain.sensors, plain.known)
+    search = ModelSearch(plain, fit, decays)
+    seen: list[list[str]] = []
+
+    def leave_out(tried: ModelSearch, _: Sequence[str]) -> ModelSearch:
+        seen.append(tried.selected)
+        return tried.refit(tried.without("engine"))
+
+    monkeypatch.setattr(stepwise, "select_linear_terms", leave_out)
+    found = stepwise.try_term(search, "engine")
+    assert seen == [["engine"]]
+    assert found.selected == []
+    assert "it does not explain the whole misfit" in found.steps[-1].text
