@@ -168,8 +168,8 @@ Each campaign: ten drops from 5 cm (buses 7 cm), five with ballast; {RATE:g} sam
 {NOISE:g} m/s²; axle masses known within {WEIGHING:g} kg. The campaign file says nothing about the kind.
 
 *Seats* are two people of different weight side by side; the model has one mean seat, which does not move against the body in
-roll, so that I_xx takes that up. *Usual* is everything at once that every car has: mount, curve, rubber, tyre, dry friction, sensors as they are. *Median error*
-is that of the worst parameter of each campaign, among the fifteen of the plain vehicle; *worst* the largest of all.
+roll. *Usual* is everything at once that every car has: mount, curve, rubber, tyre, dry friction, sensors as they are. *Median
+error* is that of the worst parameter of each campaign, among the fifteen of the plain vehicle; *worst* the largest of all.
 *Covered*: 95 % intervals of all parameters that contain the true value. Errors do not include rejected campaigns, of which no
 parameters are stated. The damper curve is compared from {SLOWEST:g} m/s to the largest velocity in the decays.
 
