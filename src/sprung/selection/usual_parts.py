@@ -23,8 +23,11 @@ parabola over a body of uniform mass between its axles."""
 
 
 def natural_frequency(rate: float, mass: float) -> float:
-    """Return the undamped natural frequency of a mass on a spring, or of a modal mass, Hz; rate and mass in SI."""
-    return float(np.sqrt(rate / mass) / (2 * np.pi))
+    """Return the undamped natural frequency of a mass on a spring, or of a modal mass, Hz; rate and mass in SI.
+
+    Zero where one of both is negative, as a fit may leave them: nothing vibrates there.
+    """
+    return float(np.sqrt(max(rate / mass, 0.0)) / (2 * np.pi))
 
 
 def usual_twist(own: Values, structure: ModelStructure, factor: float = 1.0) -> Values:
