@@ -115,12 +115,9 @@ def _is_let_go(moved: Real, first: int, rate: float, noise: float) -> bool:
     """
     half = max(round(_AT_ONCE * rate / 2), 1)
     smooth = np.abs(uniform_filter1d(moved, half, mode="nearest"))
-    largest, before, after = (
-        float(smooth[first:].max()),
-        float(smooth[max(first - half, 0)]),
-        smooth[first : first + half + 1],
-    )
-    is_held, jumps = before > _JUMP * largest, float(after.max()) - before > _JUMP * largest
+    largest, before = float(smooth[first:].max()), float(smooth[max(first - half, 0)])
+    after = float(smooth[first : first + half + 1].max())
+    is_held, jumps = before > _JUMP * largest, after - before > _JUMP * largest
     return (is_held or jumps) and largest > _ABOVE_NOISE * noise / half**0.5
 
 

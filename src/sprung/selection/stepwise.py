@@ -87,40 +87,41 @@ def select_further_terms(search: ModelSearch) -> ModelSearch:
     -------
     ModelSearch
     """
-    tried: set[str] = set()
+    tried: frozenset[str] = frozenset()
     for _ in range(_FURTHER_ROUNDS):
         if not search.structure.is_nonlinear or not search.is_overdispersed:
             break
         before = search
-        search = _try_scored(search, tried)
+        search, fitted = _try_scored(search, tried)
+        tried |= {*fitted}
         if search.structure is before.structure:
             # A low-pass resembles knees, and so does whatever else is missing: it is looked for once nothing else shows.
             search = select_low_pass(search)
         if search.structure is before.structure:
-            search = _try_rivals(search, tried)
+            search, fitted = _try_rivals(search, tried)
+            tried |= {*fitted}
         if search.structure is before.structure:
             break
     return search
 
 
-def _try_scored(search: ModelSearch, tried: set[str]) -> ModelSearch:
-    """Try terms by their scores until one is accepted, but for those that no score tells from others."""
-    open_terms = [term for term in search.open_terms(tuple(TERMS)) if term not in tried]
-    terms = [term for term in open_terms if term not in _rivals(open_terms)]
+def _try_scored(search: ModelSearch, tried: Collection[str]) -> tuple[ModelSearch, list[str]]:
+    """Try open terms by their scores until one is accepted, but for those that no score tells from others; name the best."""
+    untried = [term for term in search.open_terms(tuple(TERMS)) if term not in tried]
+    rivals = _rivals(untried)
+    terms = [term for term in untried if term not in rivals]
     _, scores = score_terms(search, terms)
     ratios = {term: gain / (search.required(term) * search.overdispersion) for term, (gain, _) in scores.items()}
     best = sorted((term for term in terms if ratios[term] > 1), key=lambda term: -ratios[term])[:_TRIED_BESIDE]
-    tried |= {*best}
     found, accepted = accept_first(search, best)
-    return confirm_low_pass(found) if accepted else found
+    return confirm_low_pass(found) if accepted else found, best
 
 
-def _try_rivals(search: ModelSearch, tried: set[str]) -> ModelSearch:
-    """Fit the terms that no score tells from each other, and accept the likeliest if it is needed."""
+def _try_rivals(search: ModelSearch, tried: Collection[str]) -> tuple[ModelSearch, list[str]]:
+    """Fit the open terms that no score tells from each other, accept the likeliest if it is needed, and name them."""
     rivals = _rivals([term for term in search.open_terms(tuple(TERMS)) if term not in tried])
-    tried |= {*rivals}
     found = try_likeliest(search, rivals) if rivals else search
-    return found if found.structure is search.structure else confirm_low_pass(found)
+    return found if found.structure is search.structure else confirm_low_pass(found), rivals
 
 
 def _rivals(terms: Sequence[str]) -> list[str]:

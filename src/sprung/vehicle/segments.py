@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from sprung.vehicle.stepping import Stepper, Trajectory
 
 Array = NDArray[np.float64]
+Index = NDArray[np.int64]
 
 _SEGMENTS = 16
 """Of a recording: many make few steps of the program, until they exceed a processor's cache."""
@@ -68,6 +69,32 @@ def segments_of(steps: int, every: int) -> tuple[int, int]:
     return number, -(-samples // number) * every
 
 
+def steps_of_segments(number: int, length: int) -> Index:
+    """Return the steps of each segment of a length, its end included, shape (step + 1, segment)."""
+    return np.arange(length + 1)[:, None] + length * np.arange(number)
+
+
+def cut_into_segments(values: Array, steps: Index, slots: Index) -> Array:
+    """Cut values along motions into segments; a *place* is a segment of one drop of a kind.
+
+    Parameters
+    ----------
+    values
+        Of each step, shape (step + 1, drop, column).
+    steps
+        Which of them, shape (step, segment); beyond the end the last one stands.
+    slots
+        Drops of each kind, shape (kind, slot).
+
+    Returns
+    -------
+    ndarray
+        Shape (step, kind, place, column).
+    """
+    chosen = np.moveaxis(values[np.minimum(steps, len(values) - 1)][:, :, slots], 1, 3)
+    return chosen.reshape(*chosen.shape[:2], chosen.shape[2] * chosen.shape[3], chosen.shape[4])
+
+
 def integrate_near(
     stepper: Stepper, states: Array, memories: Array, steps: int, every: int, near: NearbyMotion
 ) -> Trajectory:
@@ -102,9 +129,7 @@ def integrate_near(
         split = values.reshape(*values.shape[:2], slots.shape[1], number, values.shape[3])
         return np.moveaxis(split, 0, 3)[kind, slot]
 
-    times = np.minimum(np.arange(length + 1)[:, None] + length * np.arange(number), steps)
-    similar = np.moveaxis(near.forces[times][:, :, slots], 1, 3)
-    similar = similar.reshape(*similar.shape[:2], -1, similar.shape[4])
+    similar = cut_into_segments(near.forces, steps_of_segments(number, length), slots)
     error = 1.0
     for left in reversed(range(_MOST_PASSES)):
         begin = starts[slots].reshape(len(slots), -1, starts.shape[2])

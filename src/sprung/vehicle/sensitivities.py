@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.vehicle.force_laws import ElementInput
-from sprung.vehicle.segments import segments_of
+from sprung.vehicle.segments import cut_into_segments, segments_of, steps_of_segments
 from sprung.vehicle.stepping import Stepper, Trajectory
 
 Array = NDArray[np.float64]
@@ -88,7 +88,7 @@ def differentiate_motions(
 
 
 def _cut(stepper: Stepper, trajectory: Trajectory, number: int, length: int) -> tuple[Array, ElementInput]:
-    """Cut motions into a number of segments of so many steps; a *place* is a segment of one drop of a kind.
+    """Cut motions into a number of segments of so many steps, as `cut_into_segments` does.
 
     Returns
     -------
@@ -97,17 +97,11 @@ def _cut(stepper: Stepper, trajectory: Trajectory, number: int, length: int) -> 
     given
         Input of the forces at each step, as of the step that ends there; at the first one without any increment.
     """
-    steps = len(trajectory.states) - 1
-    times = np.arange(length + 1)[:, None] + length * np.arange(number)
-
-    def cut(values: Array, times: Index) -> Array:
-        chosen = np.moveaxis(values[np.minimum(times, steps)][:, :, stepper.slots], 1, 3)
-        return chosen.reshape(*chosen.shape[:2], chosen.shape[2] * chosen.shape[3], chosen.shape[4])
-
-    states, forces = cut(trajectory.states, times), cut(trajectory.forces, times)
+    steps, slots = steps_of_segments(number, length), stepper.slots
+    states, forces = (cut_into_segments(part, steps, slots) for part in (trajectory.states, trajectory.forces))
     motion = np.concatenate([states, forces, np.ones((*states.shape[:-1], 1))], axis=-1)
     travel, rate = np.split(motion @ np.swapaxes(stepper.inputs, 1, 2), 2, axis=-1)
-    memories = cut(trajectory.memories, np.maximum(times - 1, times[:1]))
+    memories = cut_into_segments(trajectory.memories, np.maximum(steps - 1, steps[:1]), slots)
     return motion, ElementInput(travel, rate, np.diff(travel, axis=0, prepend=travel[:1]), memories)
 
 
