@@ -32,7 +32,7 @@ from sprung.vehicle import (
     segments_of,
     stiffened_air_springs,
 )
-from sprung.vehicle.damper_curve import damper_curve
+from sprung.vehicle.damper_curve import CurveParts, damper_curve
 from sprung.vehicle.force_laws import (
     AIR,
     BUMP_STOP,
@@ -54,7 +54,18 @@ CAR = Vehicle.from_parameters(
     | {"d_Ff": 20.0, "d_Fr": -40.0}
     | {"u_f": 0.05, "u_r": 0.08, "v_2f": 0.25, "v_2r": 0.3, "q_2f": 0.7, "q_2r": 1.4}
     | {"v_3f": 0.5, "v_3r": 0.45, "q_3f": 0.5, "q_3r": 0.8}
-    | {"w_kf": 0.03, "w_kr": 0.02, "e_lf": 5.0, "e_lr": 7.0, "g_f": 60.0, "g_r": 80.0}
+    | {
+        "b_kf": 0.9,
+        "b_kr": 1.2,
+        "b_qf": 1.3,
+        "b_qr": 0.8,
+        "w_kf": 0.03,
+        "w_kr": 0.02,
+        "e_lf": 5.0,
+        "e_lr": 7.0,
+        "g_f": 60.0,
+        "g_r": 80.0,
+    }
 )
 WITH_GROUND = ("m_s", "m_uf", "k_sf", "c_sf", "k_tf", "h_tf", "F_f", "a", "t_f1")
 """Parameters of each kind that the force of the ground depends on, directly or by the motion."""
@@ -124,7 +135,7 @@ def test_a_load_pushes_with_its_weight() -> None:
     [
         ("friction",), ("friction", "uneven-friction"), ("rebound",), ("friction", "rebound", "progressive"),
         ("damper-curve", "tyre-curve"), ("rebound", "damper-curve", "air", "bump-stop"),
-        ("rebound", "damper-curve", "rounded-knee"),
+        ("rebound", "damper-curve", "rounded-knee"), ("rebound", "damper-curve", "rebound-knee", "second-knee", "third-knee"),
         ("damper-curve", "second-knee", "third-knee"),
     ],
 )  # fmt: skip
@@ -162,8 +173,10 @@ def test_against_another_solver(extras: tuple[str, ...]) -> None:
                     curve = abs(v) - (1 - own["q_"]) * (hinge[0] - hinge[1])
                 else:
                     number = 3 if "third-knee" in extras else 1
-                    knots = np.array([0.0, *(own[name] for name in ("v_k", "v_2", "v_3")[:number]), 10.0])
+                    shift, bend = (own["b_k"], own["b_q"]) if v > 0 and "rebound-knee" in extras else (1.0, 1.0)
+                    knots = np.array([0.0, *(shift * own[name] for name in ("v_k", "v_2", "v_3")[:number]), 10.0])
                     slopes = np.cumprod([1.0, *(own[name] for name in ("q_", "q_2", "q_3")[:number])])
+                    slopes[1:] *= bend
                     curve = np.interp(abs(v), knots, np.concatenate([[0.0], np.cumsum(slopes * np.diff(knots))]))
                 force[i] = ratio * c * (np.sign(v) * curve - v)
             elif kind == "air":
@@ -312,9 +325,11 @@ def test_motions_near_to_others_are_those_of_the_steps(extras: tuple[str, ...]) 
     [
         (FRICTION, (100.0, 2e5)), (FRICTION, (0.0, 2e5)), (REBOUND, (1.7, 1500.0)), (PROGRESSIVE, (3.0, 2e4)),
         (damper_curve(), (1500.0, 0.006, 0.4)),
-        (damper_curve(has_ratio=True), (1500.0, 1.7, 0.004, 0.5, 0.012, 0.2)),
-        (damper_curve(is_rounded=True), (1500.0, 0.002, 0.006, 0.4)),
-        (damper_curve(has_ratio=True, is_rounded=True), (1500.0, 1.7, 0.002, 0.004, 0.5, 0.012, 0.2)),
+        (damper_curve(CurveParts(has_ratio=True)), (1500.0, 1.7, 0.004, 0.5, 0.012, 0.2)),
+        (damper_curve(CurveParts(is_rounded=True)), (1500.0, 0.002, 0.006, 0.4)),
+        (damper_curve(CurveParts(has_ratio=True, is_rounded=True)), (1500.0, 1.7, 0.002, 0.004, 0.5, 0.012, 0.2)),
+        (damper_curve(CurveParts(True, True, True)), (1500.0, 1.7, 0.8, 1.2, 0.002, 0.004, 0.5, 0.012, 0.2)),
+        (damper_curve(CurveParts(has_rebound_knee=True)), (1500.0, 1.3, 0.7, 0.004, 0.5, 0.012, 0.2)),
         (AIR, (6.0, 2e4)), (AIR, (1e-6, 2e4)), (AIR, (0.0, 2e4)), (AIR, (60.0, 2e4)),
         (BUMP_STOP, (1e5, 0.004)), (GROUND, (2e4,)), (GROUND, (2e4, 30.0)),
     ],

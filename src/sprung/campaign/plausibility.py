@@ -91,6 +91,7 @@ LIMITS: Mapping[str, Limits] = {
     **_of_axles(Limits(0, 1.0, "m"), "x_b"),
     **_of_axles(Limits(0.005, 5.0, "m/s"), "v_k"),
     **_of_axles(Limits(0.005, 5.0, "m/s"), "v_2", "v_3"),
+    **_of_axles(Limits(0.05, 20.0, "1"), "b_k", "b_q"),
     **_of_axles(Limits(0, 5.0, "m/s"), "w_k"),
     **_of_axles(Limits(0.01, 10.0, "1"), "q", "q_2", "q_3"),
     **_of_axles(Limits(0, 1.0, "1"), "u"),

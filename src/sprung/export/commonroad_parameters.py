@@ -29,6 +29,7 @@ _LACKING: Mapping[str, str] = {
     "uneven-friction": "no dry friction",
     "rebound": "the mean of compression and rebound",
     "damper-curve": "the damper rate before the knee",
+    "rebound-knee": "the damper rate before the knee",
     "rounded-knee": "the damper rate before the knee",
     "second-knee": "the damper rate before the knee",
     "third-knee": "the damper rate before the knee",

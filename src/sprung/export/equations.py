@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from sprung.simulation import BlockSupport, simulate_nonlinear_drops
 from sprung.vehicle import (
     STATIONS,
+    CurveParts,
     Element,
     Load,
     Motion,
@@ -70,11 +71,10 @@ class RowForce(NamedTuple):
         return _SIDES.get(self.law, 0.0)
 
     @property
-    def knots_after(self) -> tuple[bool, bool]:
-        """Whether the knots of a damper's curve come after a rebound ratio, and after a width of rounding."""
-        kinds = [name.rpartition("_")[0] if name[0] in "vw" else name[0] for name in self.element.parameters[1:]]
-        is_curve = self.law == "damper-curve"
-        return is_curve and "r" in kinds, is_curve and any(name.startswith("w_k") for name in self.element.parameters)
+    def curve_parts(self) -> CurveParts:
+        """What a damper's curve has besides its knots; nothing for any other force."""
+        symbols = {name.partition("_")[0] for name in self.element.parameters if self.law == "damper-curve"}
+        return CurveParts(*(symbol in symbols for symbol in "rbw"))
 
 
 class RowElement(NamedTuple):

@@ -101,11 +101,11 @@ def _table(declaration: str, rows: Sequence[str]) -> str:
 
 def _force(force: RowForce, number: Mapping[str, int], memory: int) -> str:
     names = force.element.parameters
-    has_ratio, is_rounded = force.knots_after
+    parts = ", ".join(str(int(part)) for part in force.curve_parts)
     listed = ", ".join(str(number[name]) for name in names)
     factor = force.side if force.element.weight is None else force.element.weight
     return (
-        f"{{{_LAWS[force.law]}, {force.row}, {len(names)}, {{{listed}}}, {int(has_ratio)}, {int(is_rounded)}, {memory}, "
+        f"{{{_LAWS[force.law]}, {force.row}, {len(names)}, {{{listed}}}, {parts}, {memory}, "
         f"{force.offset!r}, {factor!r}}}"
     )
 

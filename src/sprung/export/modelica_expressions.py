@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 from sprung.export.equations import RowForce, Tyre
 from sprung.export.outputs import of_wheel
-from sprung.vehicle import Row
+from sprung.vehicle import CurveParts, Row
 
 _POLYTROPIC = 1.3
 """Exponent of the gas in an air spring, as in the vehicle room."""
@@ -35,11 +35,19 @@ def _rebound(parameters: Sequence[str], _: str, v: str) -> str:
     return f"({ratio} - 1)*{damping}*max({v}, 0)"
 
 
-def _damper_curve(parameters: Sequence[str], v: str, *, has_ratio: bool, is_rounded: bool) -> str:
+def _damper_curve(parameters: Sequence[str], v: str, parts: CurveParts) -> str:
     """Return what the knots of a damper's curve add to its force."""
     damping, *further = parameters
-    ratio = further.pop(0) if has_ratio else "1"
-    rounding = further.pop(0) if is_rounded else ""
+    ratio = further.pop(0) if parts.has_ratio else "1"
+    shift, bend = (further.pop(0), further.pop(0)) if parts.has_rebound_knee else ("", "")
+    rounding = further.pop(0) if parts.is_rounded else ""
+    if shift:
+        # In rebound the first knee has a slope of its own behind it, and all knees other velocities.
+        extends = f"noEvent({v} > 0)"
+        scaled = [f"(if {extends} then {shift} else 1)*{name}" for name in (rounding, *further[::2]) if name]
+        rounding = scaled.pop(0) if rounding else ""
+        further[::2] = scaled
+        further[1] = f"(if {extends} then {bend} else 1)*{further[1]}"
     knots, before = [], "1"
     for velocity, slope in zip(further[::2], further[1::2], strict=True):
         above = f"(abs({v}) - {velocity})"
@@ -74,8 +82,7 @@ def law_expression(force: RowForce, position: int) -> str:
         case "rebound":
             return _rebound(parameters, travel, rate)
         case "damper-curve":
-            has_ratio, is_rounded = force.knots_after
-            return _damper_curve(parameters, rate, has_ratio=has_ratio, is_rounded=is_rounded)
+            return _damper_curve(parameters, rate, force.curve_parts)
         case law:
             return BY_TRAVEL[law](parameters, f"{travel} - travel_at_rest{position}", rate)
 

@@ -326,13 +326,15 @@ def _pieces(force: RowForce, values: dict[str, float]) -> Iterator[tuple[float, 
         stiffness, clearance = own
         yield stiffness * (force.offset - clearance), -stiffness, 0.0, True
     elif force.law == "damper-curve":
-        has_ratio, _ = force.knots_after
+        has_ratio, has_rebound_knee, _ = force.curve_parts
         damping, *further = own
         ratio = further.pop(0) if has_ratio else 1.0
-        before = 1.0
-        for velocity, slope in zip(further[::2], further[1::2], strict=True):
-            drop = damping * before * (1 - slope)
-            before *= slope
-            # What a knee takes off the force of the damper, in rebound and in compression.
-            yield -ratio * drop * velocity, 0.0, ratio * drop, drop > 0
-            yield drop * velocity, 0.0, drop, drop < 0
+        shift, bend = (further.pop(0), further.pop(0)) if has_rebound_knee else (1.0, 1.0)
+        # What the knees take off the force of the damper, in rebound and in compression.
+        rebound, compression = ratio * damping, damping
+        for number, (velocity, slope) in enumerate(zip(further[::2], further[1::2], strict=True)):
+            factor = slope if number else slope * bend
+            drops = rebound * (1 - factor), compression * (1 - slope)
+            rebound, compression = rebound * factor, compression * slope
+            yield -drops[0] * shift * velocity, 0.0, drops[0], drops[0] > 0
+            yield drops[1] * velocity, 0.0, drops[1], drops[1] < 0

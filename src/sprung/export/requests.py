@@ -35,6 +35,7 @@ TERM_NAMES: Mapping[str, str] = {
     "uneven-friction": "dry friction that differs between left and right",
     "rebound": "dampers stiffer in rebound",
     "damper-curve": "damper curves with knees",
+    "rebound-knee": "damper knees that differ in rebound",
     "rounded-knee": "rounded knees of damper curves",
     "second-knee": "second knees of damper curves",
     "third-knee": "third knees of damper curves",

@@ -159,6 +159,19 @@ NONLINEAR_TERMS = (
         undefined=lambda own, _: {f"v_k{axle}": _KNEE for axle in axles_of(own)},
     ),
     ModelTerm(
+        "rebound-knee",
+        lambda p: math.hypot(*(p[f"b_{symbol}{axle}"] - 1 for symbol in "kq" for axle in axles_of(p))),
+        typical=0.2,
+        spread=2.0,
+        negligible=0.02,
+        description=TermDescription(
+            "{axle} damper knees that lie at {0} times the velocity in rebound, with {1} times the rate beyond",
+            ((lambda p, axle: p[f"b_k{axle}"], "1"), (lambda p, axle: p[f"b_q{axle}"], "1")),
+            again="{axle} ones at {0} times, with {1} times",
+            neutral=1.0,
+        ),
+    ),
+    ModelTerm(
         "rounded-knee",
         of_axles(lambda p, axle: p[f"w_k{axle}"] / p.get(f"v_k{axle}", _KNEE)),
         typical=0.3,

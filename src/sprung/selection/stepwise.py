@@ -99,7 +99,8 @@ def select_further_terms(search: ModelSearch) -> ModelSearch:
             search = select_low_pass(search)
         if search.structure is before.structure:
             search, fitted = _try_rivals(search, tried)
-            tried |= {*fitted}
+            # What the likeliest of them has beaten may be needed beside it.
+            tried = tried | {*fitted} if search.structure is before.structure else tried - {*fitted}
         if search.structure is before.structure:
             break
     return search

@@ -11,6 +11,7 @@ from sprung.vehicle.characteristics import (
 )
 from sprung.vehicle.checked_record import UNKNOWN_KEY, checked_record, parse_record, problems_of_record
 from sprung.vehicle.curves import FORCE_CURVES, CurveElements
+from sprung.vehicle.damper_curve import CurveParts
 from sprung.vehicle.elements import (
     EXTRAS,
     LINEAR_EXTRAS,
@@ -113,6 +114,7 @@ __all__ = [
     "CarriedAt",
     "Characteristic",
     "CurveElements",
+    "CurveParts",
     "Element",
     "ElementInput",
     "EquivalentElements",

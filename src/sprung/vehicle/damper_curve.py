@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,86 +13,136 @@ from sprung.vehicle.force_laws import ElementForce, ElementInput, ForceLaw
 Array = NDArray[np.float64]
 
 
-def damper_curve(*, has_ratio: bool = False, is_rounded: bool = False) -> ForceLaw:
+class CurveParts(NamedTuple):
+    """What the curve of a damper has besides its knots, each a parameter of its own.
+
+    Attributes
+    ----------
+    has_ratio
+        Whether rebound has another rate than compression.
+    has_rebound_knee
+        Whether rebound has a knee of its own: other velocities of knots, and another slope behind the first.
+    is_rounded
+        Whether the knots are rounded.
+    """
+
+    has_ratio: bool = False
+    has_rebound_knee: bool = False
+    is_rounded: bool = False
+
+
+_KNOTS_ALONE = CurveParts()
+"""A curve of straight lines between knots that are alike in compression and rebound."""
+
+
+def damper_curve(parts: CurveParts = _KNOTS_ALONE) -> ForceLaw:
     """Return the law of what the knots of a damper's curve add to the force of a damper of constant rate.
 
-    The force is continuous and passes through zero; it is linear between the knots, which are alike in compression and
-    rebound. Its parameters are the damping c before the first knot in compression, N s/m; the rebound ratio r, if it is one;
-    half the width w over which hyperbolas round the knots, m/s, if it is one; and for each knot its velocity, m/s, and the
-    slope after it over that before it. Positive ratios of knots in ascending order make the curve monotone.
+    The force is continuous and passes through zero; it is linear between the knots. Its parameters are the damping c before
+    the first knot in compression, N s/m; of `parts` those that it has, in their order: the rebound ratio r; of rebound over
+    compression the velocity of the knots, and the slope after the first over that before it; half the width w over which
+    hyperbolas round the knots, m/s; and for each knot its velocity, m/s, and the slope after it over that before it. Positive
+    ratios of knots in ascending order make the curve monotone.
 
     Parameters
     ----------
-    has_ratio
-        Whether rebound has a ratio of its own.
-    is_rounded
-        Whether the knots are rounded.
+    parts
+        What it has besides knots.
     """
     return ForceLaw(
         "damper-curve",
         False,
-        partial(_force, has_ratio=has_ratio, is_rounded=is_rounded),
-        partial(_derivatives, has_ratio=has_ratio, is_rounded=is_rounded),
+        partial(_force, parts),
+        partial(_derivatives, parts),
     )
 
 
-def _force(parameters: Array, given: ElementInput, *, has_ratio: bool, is_rounded: bool) -> ElementForce:
+class _Side(NamedTuple):
+    """The parameters of a curve on the side on which each element moves: damping, rounding, velocities and ratios of knots."""
+
+    damping: Array
+    rounding: Array | None
+    velocities: list[Array]
+    ratios: list[Array]
+
+
+class _Given(NamedTuple):
+    """The parameters of a curve by their meaning, neutral where it has none of a kind."""
+
+    damping: Array
+    ratio: Array | float
+    velocity_ratio: Array | float
+    slope_ratio: Array | float
+    rounding: Array | None
+    velocities: list[Array]
+    ratios: list[Array]
+
+    @classmethod
+    def of(cls, parts: CurveParts, parameters: Array) -> _Given:
+        """Sort the parameters of the law."""
+        damping, *further = parameters
+        ratio = further.pop(0) if parts.has_ratio else 1.0
+        shift, bend = (further.pop(0), further.pop(0)) if parts.has_rebound_knee else (1.0, 1.0)
+        rounding = further.pop(0) if parts.is_rounded else None
+        return cls(damping, ratio, shift, bend, rounding, further[::2], further[1::2])
+
+    def side(self, extends: NDArray[np.bool_]) -> _Side:
+        """Return the parameters of the side on which each element moves."""
+        shift = np.where(extends, self.velocity_ratio, 1.0)
+        first, *others = self.ratios
+        return _Side(
+            self.damping * np.where(extends, self.ratio, 1.0),
+            None if self.rounding is None else self.rounding * shift,
+            [velocity * shift for velocity in self.velocities],
+            [first * np.where(extends, self.slope_ratio, 1.0), *others],
+        )
+
+
+def _force(parts: CurveParts, parameters: Array, given: ElementInput) -> ElementForce:
     """Return what the knots take off the force of a damper of constant rate."""
-    ratio, rounding, velocities, drops = _knots(parameters, has_ratio, is_rounded)
-    factor = parameters[0] * np.where(given.rate > 0, ratio, 1.0)
+    side = _Given.of(parts, parameters).side(given.rate > 0)
     size, zero = np.abs(given.rate), np.zeros_like(given.travel)
-    missing, slope = zero, zero
-    for velocity, drop in zip(velocities, drops, strict=True):
-        excess, by_size, _, _ = _knot(size, velocity, rounding)
-        missing = missing + drop * excess
-        slope = slope + drop * by_size
-    force = -factor * np.sign(given.rate) * missing
-    return ElementForce(force, given.memory, zero, -factor * slope, zero, zero, zero)
+    before, missing, slope = zero + 1.0, zero, zero
+    for velocity, ratio in zip(side.velocities, side.ratios, strict=True):
+        excess, by_size, _, _ = _knot(size, velocity, side.rounding)
+        drop = before * (1.0 - ratio)
+        missing, slope, before = missing + drop * excess, slope + drop * by_size, before * ratio
+    force = -side.damping * np.sign(given.rate) * missing
+    return ElementForce(force, given.memory, zero, -side.damping * slope, zero, zero, zero)
 
 
-def _derivatives(parameters: Array, given: ElementInput, *, has_ratio: bool, is_rounded: bool) -> tuple[Array, Array]:
+def _derivatives(parts: CurveParts, parameters: Array, given: ElementInput) -> tuple[Array, Array]:
     """Return the derivatives of the force by the parameters; it has no memory."""
-    ratio, rounding, velocities, drops = _knots(parameters, has_ratio, is_rounded)
-    extends, size, damping = given.rate > 0, np.abs(given.rate), parameters[0]
-    unit = -np.sign(given.rate) * np.where(extends, ratio, 1.0)
-    knots = [_knot(size, velocity, rounding) for velocity in velocities]
-    excesses = [knot[0] for knot in knots]
-    zero = np.zeros_like(size)
+    own, extends = _Given.of(parts, parameters), given.rate > 0
+    side, size, zero = own.side(extends), np.abs(given.rate), np.zeros_like(given.travel)
+    knots = [_knot(size, velocity, side.rounding) for velocity in side.velocities]
+    slopes = np.cumprod(np.stack([zero + 1.0, *(zero + ratio for ratio in side.ratios)]), axis=0)
+    drops, excesses = slopes[:-1] - slopes[1:], [knot[0] for knot in knots]
     missing = sum((drop * excess for drop, excess in zip(drops, excesses, strict=True)), zero)
-    force = [unit * missing]
-    if has_ratio:
-        force.append(-damping * missing * extends)
-    if is_rounded:
-        by_rounding = sum((drop * knot[3] for drop, knot in zip(drops, knots, strict=True)), zero)
-        force.append(damping * unit * by_rounding)
-    ratios = parameters[_first_knot(has_ratio, is_rounded) + 1 :: 2]
-    slopes = _slopes(ratios)
+    unit = -np.sign(given.rate)
+    by_velocity = [side.damping * unit * drop * knot[2] for drop, knot in zip(drops, knots, strict=True)]
+    by_rounding = side.damping * unit * sum((drop * knot[3] for drop, knot in zip(drops, knots, strict=True)), zero)
     # Behind a knot all slopes have its ratio as a factor.
-    behind = [
-        slopes[i] * excesses[i] - sum((drops[k] * excesses[k] for k in range(i + 1, len(drops))), zero) / own
-        for i, own in enumerate(ratios)
+    by_ratio = [
+        side.damping
+        * unit
+        * (sum((drops[k] * excesses[k] for k in range(i + 1, len(drops))), zero) / ratio - slopes[i] * excesses[i])
+        for i, ratio in enumerate(side.ratios)
     ]
-    for drop, knot, lost in zip(drops, knots, behind, strict=True):
-        force += [damping * unit * drop * knot[2], -damping * unit * lost]
+    shift = np.where(extends, own.velocity_ratio, 1.0)
+    force = [unit * missing * np.where(extends, own.ratio, 1.0)]
+    if parts.has_ratio:
+        force.append(own.damping * unit * missing * extends)
+    if parts.has_rebound_knee:
+        shifted = sum((one * velocity for one, velocity in zip(by_velocity, own.velocities, strict=True)), zero)
+        shifted += 0.0 if own.rounding is None else by_rounding * own.rounding
+        force += [shifted * extends, by_ratio[0] * own.ratios[0] * extends]
+    if parts.is_rounded:
+        force.append(by_rounding * shift)
+    by_ratio[0] = by_ratio[0] * np.where(extends, own.slope_ratio, 1.0)
+    for of_velocity, of_ratio in zip(by_velocity, by_ratio, strict=True):
+        force += [of_velocity * shift, of_ratio]
     return np.stack(force), np.zeros((len(force), *size.shape))
-
-
-def _knots(parameters: Array, has_ratio: bool, is_rounded: bool) -> tuple[Array | float, Array | None, Array, Array]:
-    """Return ratio, rounding, velocities and what each knot takes off the slope, as a part of the damping."""
-    first = _first_knot(has_ratio, is_rounded)
-    slopes = _slopes(parameters[first + 1 :: 2])
-    ratio = parameters[1] if has_ratio else 1.0
-    return ratio, parameters[first - 1] if is_rounded else None, parameters[first::2], slopes[:-1] - slopes[1:]
-
-
-def _first_knot(has_ratio: bool, is_rounded: bool) -> int:
-    """Return the position of the first knot's velocity among the parameters."""
-    return 1 + has_ratio + is_rounded
-
-
-def _slopes(ratios: Array) -> Array:
-    """Return the slopes before and after each knot, as parts of the damping, shape (knot + 1, element)."""
-    return np.cumprod(np.concatenate([np.ones_like(ratios[:1]), ratios]), axis=0)
 
 
 def _knot(size: Array, velocity: Array, rounding: Array | None) -> tuple[Array, Array, Array, Array]:

@@ -35,13 +35,14 @@ LINEAR_EXTRAS = (
 """Extras, by the name used in a campaign's ``[model]``, of the linear model."""
 
 EXTRAS = (
-    *LINEAR_EXTRAS, "friction", "load-friction", "uneven-friction", "rebound", "damper-curve", "rounded-knee",
-    "second-knee", "third-knee", "progressive", "air", "levelled-air", "bump-stop", "tyre-curve",
+    *LINEAR_EXTRAS, "friction", "load-friction", "uneven-friction", "rebound", "damper-curve", "rebound-knee",
+    "rounded-knee", "second-knee", "third-knee", "progressive", "air", "levelled-air", "bump-stop", "tyre-curve",
 )  # fmt: skip
 """All extras; those beyond the linear ones are nonlinear elements."""
 
 REFINED: Mapping[str, str] = MappingProxyType(
     {
+        "rebound-knee": "damper-curve",
         "rounded-knee": "damper-curve",
         "second-knee": "damper-curve",
         "third-knee": "second-knee",

@@ -10,7 +10,7 @@ from typing import Literal
 from sprung.display import shown
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import kinematics
-from sprung.vehicle.damper_curve import damper_curve
+from sprung.vehicle.damper_curve import CurveParts, damper_curve
 from sprung.vehicle.elements import damper_travel, travels
 from sprung.vehicle.force_laws import (
     AIR,
@@ -118,12 +118,15 @@ def _damper_forces(axle: str, travel: Row, extras: Collection[str]) -> Iterator[
     if "rebound" in extras:
         yield NonlinearElement(REBOUND, (parameter_name("r", axle), f"c_s{axle}"), travel)
     if "damper-curve" in extras:
-        rebound, rounded = "rebound" in extras, "rounded-knee" in extras
-        before = (f"c_s{axle}", *(parameter_name("r", axle),) * rebound, *(f"w_k{axle}",) * rounded)
+        parts = CurveParts("rebound" in extras, "rebound-knee" in extras, "rounded-knee" in extras)
+        of_parts = zip(
+            parts, ((parameter_name("r", axle),), (f"b_k{axle}", f"b_q{axle}"), (f"w_k{axle}",)), strict=True
+        )
+        before = (f"c_s{axle}", *(name for has_it, names in of_parts if has_it for name in names))
         knots = [f"v_k{axle}", parameter_name("q", axle)]
         for number in _further_knots(extras):
             knots += [f"v_{number}{axle}", f"q_{number}{axle}"]
-        yield NonlinearElement(damper_curve(has_ratio=rebound, is_rounded=rounded), (*before, *knots), travel)
+        yield NonlinearElement(damper_curve(parts), (*before, *knots), travel)
 
 
 def _spring_forces(axle: str, travel: Row, extras: Collection[str]) -> Iterator[NonlinearElement]:

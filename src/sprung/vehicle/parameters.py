@@ -127,6 +127,8 @@ _TABLE: Mapping[str, Parameter] = {
     "r*": Parameter("1", "rebound damping over compression damping, {}", False),
     "v_k*": Parameter("m/s", "velocity at which the curve of the {} dampers has its knee", False),
     "q*": Parameter("1", "damping beyond the knee over that before it, {}", False),
+    "b_k*": Parameter("1", "velocity of the knees of the {} dampers in rebound over that in compression", False),
+    "b_q*": Parameter("1", "part of the {} damping beyond the knee in rebound over that part in compression", False),
     "w_k*": Parameter("m/s", "half the width over which the knee of the {} dampers is rounded", False, False),
     "v_2*": Parameter("m/s", "velocity at which the curve of the {} dampers has its second knee", False),
     "q_2*": Parameter("1", "damping beyond the second knee over that before it, {}", False),
@@ -185,6 +187,7 @@ _TERMS: Mapping[str, tuple[str, ...]] = {
     "uneven-friction": ("d_F*",),
     "rebound": ("r*",),
     "damper-curve": ("v_k*", "q*"),
+    "rebound-knee": ("b_k*", "b_q*"),
     "rounded-knee": ("w_k*",),
     "second-knee": ("v_2*", "q_2*"),
     "third-knee": ("v_3*", "q_3*"),
@@ -231,7 +234,7 @@ _WITHOUT_EFFECT: Mapping[str, float] = {
 }
 """Parameters of extras without effect where the others of the extra are neutral, and their values in a vehicle without it."""
 
-_FACTORS = frozenset({"r*", "q*", "q_2*", "q_3*", "n*", "n*1", "n*2"})
+_FACTORS = frozenset({"r*", "b_k*", "b_q*", "q*", "q_2*", "q_3*", "n*", "n*1", "n*2"})
 
 
 def _names_of(patterns: Mapping[str, float]) -> dict[str, float]:

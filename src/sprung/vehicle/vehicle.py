@@ -71,6 +71,8 @@ class Vehicle:
     v_kf, v_kr, q_f, q_r, w_kf, w_kr
         Velocity at which the damper curves have their knee, m/s, the damping beyond it over that before it, and half the width
         over which it is rounded, m/s.
+    b_kf, b_kr, b_qf, b_qr
+        Velocity of the knees in rebound over that in compression, and likewise what `q` is in rebound.
     v_2f, v_2r, q_2f, q_2r, v_3f, v_3r, q_3f, q_3r
         Velocities of a second and a third knee, m/s, and the damping beyond each over that before it.
     p_f, p_r

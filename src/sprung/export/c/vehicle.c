@@ -14,7 +14,7 @@ enum { FRICTION, LOAD_FRICTION, UNEVEN_FRICTION, REBOUND, DAMPER_CURVE, PROGRESS
 /* A parameter is given by its number; -1 stands for none, and as a factor for 1. */
 typedef struct { int row, coordinate, parameter; double value; } RowEntry;
 typedef struct { int law, row, parameter; double factor, offset; } Element;
-typedef struct { int law, row, count, parameters[12], has_ratio, is_rounded, memory; double offset, factor; } Force;
+typedef struct { int law, row, count, parameters[12], has_ratio, has_rebound_knee, is_rounded, memory; double offset, factor; } Force;
 typedef struct { int coordinate, stiffness, difference, damping, growth; double side; } Tyre;
 typedef struct { int output, order, coordinate, parameter; double value; } OutputEntry;
 typedef struct { int output, wheel; } TyreOutput;
@@ -116,14 +116,19 @@ static double air_ratio(double strain) {
 /* What the knots of a damper's curve add to its force. */
 static double damper_curve(const Vehicle *vehicle, const Force *force, double rate) {
     const int *p = force->parameters + 1;
-    double ratio = force->has_ratio ? value(vehicle, *p++) : 1.0, width = 0.0;
-    double size = fabs(rate), slope = 1.0, missing = 0.0;
-    if (force->is_rounded) width = value(vehicle, *p++);
+    double ratio = force->has_ratio ? value(vehicle, *p++) : 1.0;
+    double shift = force->has_rebound_knee ? value(vehicle, *p++) : 1.0;
+    double bend = force->has_rebound_knee ? value(vehicle, *p++) : 1.0;
+    double width = force->is_rounded ? value(vehicle, *p++) : 0.0;
+    double slope = 1.0, missing = 0.0, size = fabs(rate);
+    if (rate <= 0.0) shift = bend = 1.0;
+    width *= shift;
     for (; p < force->parameters + force->count; p += 2) {
-        double velocity = value(vehicle, p[0]), factor = value(vehicle, p[1]), beyond = size - velocity;
+        double velocity = shift * value(vehicle, p[0]), factor = bend * value(vehicle, p[1]), beyond = size - velocity;
         double excess = 0.5 * (beyond + hypot(beyond, width)) - 0.5 * (hypot(velocity, width) - velocity);
         missing += slope * (1.0 - factor) * excess;
         slope *= factor;
+        bend = 1.0;
     }
     return -value(vehicle, force->parameters[0]) * (rate > 0.0 ? ratio : -1.0) * missing;
 }
