@@ -44,6 +44,8 @@ VEHICLES: Mapping[str, Vehicle] = {
     "rebound": _car(**_both(r_=1.8)),
     "curve": _car(**_both(r_=1.8), **_KNEES),
     "rounded": _car(**_KNEES, **_both(w_k=0.03)),
+    "rebound-knee": _car(**_both(r_=1.8, b_k=0.7, b_q=1.3), **_KNEES),
+    "rounded-rebound": _car(**_KNEES, **_both(b_k=0.7, b_q=1.3, w_k=0.03)),
     "degressive": _car(**_both(p_=-1.0, e_l=2.0, g_=15.0)),
     "progressive": _car(**_both(p_=3.0)),
     "air": _car(**_both(e_=2.5)),

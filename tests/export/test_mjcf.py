@@ -23,6 +23,7 @@ LACKING = {
     "load-friction": "u_f",
     "uneven-friction": "d_Ff",
     "rounded": "w_kf",
+    "rounded-rebound": "w_kf",
     "air": "e_f",
     "levelled-air": "e_lf",
     "air-and-stop": "e_f",

@@ -21,6 +21,7 @@ _OPEN = (
     "load-friction",
     "rebound",
     "damper-curve",
+    "rebound-knee",
     "rounded-knee",
     "second-knee",
     "third-knee",
@@ -90,6 +91,23 @@ def test_a_second_knee_is_selected_and_shown() -> None:
     assert np.all(np.abs(found.force - truth) < 5 * np.asarray(found.std))
     assert np.all(np.asarray(found.std) < 0.01 * truth)
     assert "second knee" in result.additional_terms
+
+
+@pytest.mark.slow
+def test_a_knee_of_rebound_is_selected_and_shown() -> None:
+    """Valves of rebound that open earlier, onto a steeper line; a second knee for both directions explains less."""
+    own = {"r_f": 1.6, "r_r": 1.8, "b_kf": 0.7, "b_kr": 0.75, "b_qf": 1.3, "b_qr": 1.2}
+    car, result = identified(ONE_KNEE | own, "empty")
+    assert result.fit.model == ("rebound", "damper-curve", "rebound-knee")
+    assert result.verdict.state == "accept"
+    assert max(map(abs, deviations(car, result).values())) < 5
+    assert "in rebound" in result.additional_terms
+    # The curve has the knee of either side.
+    curve = result.curves["damper_front"]
+    speed = np.array([-0.15, -0.05, 0.05, 0.15])
+    truth = 1500.0 * np.array([-(0.08 + 0.4 * 0.07), -0.05, 1.6 * 0.05, 1.6 * (0.056 + 0.52 * 0.094)])
+    found = curve.at(speed)
+    assert np.all(np.abs(found.force - truth) < 5 * np.asarray(found.std))
 
 
 @pytest.mark.long

@@ -41,15 +41,19 @@ def _damper_curve(parameters: Sequence[str], v: str, parts: CurveParts) -> str:
     ratio = further.pop(0) if parts.has_ratio else "1"
     shift, bend = (further.pop(0), further.pop(0)) if parts.has_rebound_knee else ("", "")
     rounding = further.pop(0) if parts.is_rounded else ""
-    if shift:
-        # In rebound the first knee has a slope of its own behind it, and all knees other velocities.
-        extends = f"noEvent({v} > 0)"
-        scaled = [f"(if {extends} then {shift} else 1)*{name}" for name in (rounding, *further[::2]) if name]
-        rounding = scaled.pop(0) if rounding else ""
-        further[::2] = scaled
-        further[1] = f"(if {extends} then {bend} else 1)*{further[1]}"
+    compression = _missing(v, rounding, further[::2], further[1::2])
+    if not parts.has_rebound_knee:
+        return f"-{damping}*(if noEvent({v} > 0) then {ratio} else -1)*({compression})"
+    first, *others = further[1::2]
+    velocities = [f"({shift}*{velocity})" for velocity in further[::2]]
+    rebound = _missing(v, rounding and f"({shift}*{rounding})", velocities, [f"({bend}*{first})", *others])
+    return f"-{damping}*(if noEvent({v} > 0) then {ratio}*({rebound}) else -({compression}))"
+
+
+def _missing(v: str, rounding: str, velocities: Sequence[str], slopes: Sequence[str]) -> str:
+    """Return what knots take off the velocity of a damper of constant rate."""
     knots, before = [], "1"
-    for velocity, slope in zip(further[::2], further[1::2], strict=True):
+    for velocity, slope in zip(velocities, slopes, strict=True):
         above = f"(abs({v}) - {velocity})"
         excess = f"max({above}, 0)"
         if rounding:
@@ -57,8 +61,7 @@ def _damper_curve(parameters: Sequence[str], v: str, parts: CurveParts) -> str:
             excess = f"0.5*({above} + sqrt({above}^2 + {rounding}^2) - ({at_rest}))"
         knots.append(f"{before}*(1 - {slope})*{excess}")
         before = f"{before}*{slope}"
-    side = f"(if noEvent({v} > 0) then {ratio} else -1)"
-    return f"-{damping}*{side}*({' + '.join(knots)})"
+    return " + ".join(knots)
 
 
 BY_TRAVEL: Mapping[str, Callable[[Sequence[str], str, str], str]] = {
