@@ -230,17 +230,23 @@ def _maximise(
     most: int,
     damping: float,
 ) -> Maximum[Iterate]:
-    """Maximise, and once more from there without impossible memories of friction."""
+    """Maximise, and once more from there without impossible memories of friction.
+
+    Whether that is likelier shows on the way: only then is it followed to the end. A fit that was stopped is not fitted again.
+    """
     priors = problem.priors
     u = priors.project(priors.coordinates.from_parameters(values))
     best = problem.maximise(u, None, tolerance, damping, most)
     states = objective.without_impossible_memories(best.point.at.values, best.point.at.states)
-    if states is None:
+    if states is None or not best.converged:
         return best
-    restarted = replace(problem, objective=objective.with_states(states))
-    found = restarted.maximise(best.point.u, None, tolerance, CLOSE_BY, most)
-    is_better = problem.cost(found.point) < problem.cost(best.point)
-    return found._replace(steps=best.steps + found.steps) if is_better else best
+    found, steps, u = best, best.steps, best.point.u
+    for enough in sorted({tolerance, max(tolerance, _ON_THE_WAY)}, reverse=True):
+        found = replace(problem, objective=objective.with_states(states)).maximise(u, None, enough, CLOSE_BY, most)
+        steps, states, u = steps + found.steps, found.point.at.states, found.point.u
+        if problem.cost(found.point) > problem.cost(best.point) + enough:
+            return best
+    return found._replace(steps=steps) if problem.cost(found.point) < problem.cost(best.point) else best
 
 
 def _beginning(decay: FreeDecay) -> FreeDecay:
