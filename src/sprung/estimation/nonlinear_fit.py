@@ -232,13 +232,13 @@ def _maximise(
 ) -> Maximum[Iterate]:
     """Maximise, and once more from there without impossible memories of friction.
 
-    Whether that is likelier shows on the way: only then is it followed to the end. A fit that was stopped is not fitted again.
+    Whether that is likelier shows on the way: only then is it followed to the end. A single step only compares models.
     """
     priors = problem.priors
     u = priors.project(priors.coordinates.from_parameters(values))
     best = problem.maximise(u, None, tolerance, damping, most)
     states = objective.without_impossible_memories(best.point.at.values, best.point.at.states)
-    if states is None or not best.converged:
+    if states is None or most == 1:
         return best
     found, steps, u = best, best.steps, best.point.u
     for enough in sorted({tolerance, max(tolerance, _ON_THE_WAY)}, reverse=True):
