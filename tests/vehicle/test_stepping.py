@@ -54,18 +54,8 @@ CAR = Vehicle.from_parameters(
     | {"d_Ff": 20.0, "d_Fr": -40.0}
     | {"u_f": 0.05, "u_r": 0.08, "v_2f": 0.25, "v_2r": 0.3, "q_2f": 0.7, "q_2r": 1.4}
     | {"v_3f": 0.5, "v_3r": 0.45, "q_3f": 0.5, "q_3r": 0.8}
-    | {
-        "b_kf": 0.9,
-        "b_kr": 1.2,
-        "b_qf": 1.3,
-        "b_qr": 0.8,
-        "w_kf": 0.03,
-        "w_kr": 0.02,
-        "e_lf": 5.0,
-        "e_lr": 7.0,
-        "g_f": 60.0,
-        "g_r": 80.0,
-    }
+    | {"b_kf": 0.9, "b_kr": 1.2, "b_qf": 1.3, "b_qr": 0.8}
+    | {"w_kf": 0.03, "w_kr": 0.02, "e_lf": 5.0, "e_lr": 7.0, "g_f": 60.0, "g_r": 80.0}
 )
 WITH_GROUND = ("m_s", "m_uf", "k_sf", "c_sf", "k_tf", "h_tf", "F_f", "a", "t_f1")
 """Parameters of each kind that the force of the ground depends on, directly or by the motion."""

@@ -241,7 +241,7 @@ def _maximise(
     if states is None or most == 1:
         return best
     found, steps, u = best, best.steps, best.point.u
-    for enough in sorted({tolerance, max(tolerance, _ON_THE_WAY)}, reverse=True):
+    for enough in (_ON_THE_WAY, tolerance):
         found = replace(problem, objective=objective.with_states(states)).maximise(u, None, enough, CLOSE_BY, most)
         steps, states, u = steps + found.steps, found.point.at.states, found.point.u
         if problem.cost(found.point) > problem.cost(best.point) + enough:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 from sprung.export.equations import RowForce, Tyre
 from sprung.export.outputs import of_wheel
-from sprung.vehicle import CurveParts, Row
+from sprung.vehicle import CurveParameters, CurveParts, Row
 
 _POLYTROPIC = 1.3
 """Exponent of the gas in an air spring, as in the vehicle room."""
@@ -37,17 +37,15 @@ def _rebound(parameters: Sequence[str], _: str, v: str) -> str:
 
 def _damper_curve(parameters: Sequence[str], v: str, parts: CurveParts) -> str:
     """Return what the knots of a damper's curve add to its force."""
-    damping, *further = parameters
-    ratio = further.pop(0) if parts.has_ratio else "1"
-    shift, bend = (further.pop(0), further.pop(0)) if parts.has_rebound_knee else ("", "")
-    rounding = further.pop(0) if parts.is_rounded else ""
-    compression = _missing(v, rounding, further[::2], further[1::2])
+    curve = CurveParameters.of(parts, parameters, "1")
+    rounding, (first, *others) = curve.rounding or "", curve.ratios
+    compression = _missing(v, rounding, curve.velocities, curve.ratios)
     if not parts.has_rebound_knee:
-        return f"-{damping}*(if noEvent({v} > 0) then {ratio} else -1)*({compression})"
-    first, *others = further[1::2]
-    velocities = [f"({shift}*{velocity})" for velocity in further[::2]]
-    rebound = _missing(v, rounding and f"({shift}*{rounding})", velocities, [f"({bend}*{first})", *others])
-    return f"-{damping}*(if noEvent({v} > 0) then {ratio}*({rebound}) else -({compression}))"
+        return f"-{curve.damping}*(if noEvent({v} > 0) then {curve.ratio} else -1)*({compression})"
+    velocities = [f"({curve.velocity_ratio}*{velocity})" for velocity in curve.velocities]
+    slopes = [f"({curve.slope_ratio}*{first})", *others]
+    rebound = _missing(v, rounding and f"({curve.velocity_ratio}*{rounding})", velocities, slopes)
+    return f"-{curve.damping}*(if noEvent({v} > 0) then {curve.ratio}*({rebound}) else -({compression}))"
 
 
 def _missing(v: str, rounding: str, velocities: Sequence[str], slopes: Sequence[str]) -> str:

@@ -21,7 +21,7 @@ from sprung.export.file import ExportedFile
 from sprung.export.outputs import identifier, of_wheel
 from sprung.export.requests import check_terms, resolve_load, without_terms
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import STATIONS, Load, Rows, Sensor, Vehicle
+from sprung.vehicle import STATIONS, CurveParameters, Load, Rows, Sensor, Vehicle
 
 Array = NDArray[np.float64]
 
@@ -326,15 +326,11 @@ def _pieces(force: RowForce, values: dict[str, float]) -> Iterator[tuple[float, 
         stiffness, clearance = own
         yield stiffness * (force.offset - clearance), -stiffness, 0.0, True
     elif force.law == "damper-curve":
-        has_ratio, has_rebound_knee, _ = force.curve_parts
-        damping, *further = own
-        ratio = further.pop(0) if has_ratio else 1.0
-        shift, bend = (further.pop(0), further.pop(0)) if has_rebound_knee else (1.0, 1.0)
-        # What the knees take off the force of the damper, in rebound and in compression.
-        rebound, compression = ratio * damping, damping
-        for number, (velocity, slope) in enumerate(zip(further[::2], further[1::2], strict=True)):
-            factor = slope if number else slope * bend
-            drops = rebound * (1 - factor), compression * (1 - slope)
-            rebound, compression = rebound * factor, compression * slope
-            yield -drops[0] * shift * velocity, 0.0, drops[0], drops[0] > 0
+        curve = CurveParameters.of(force.curve_parts, own, 1.0)
+        # What a knee takes off the force of the damper, in rebound and in compression.
+        rebound, compression, bend = curve.ratio * curve.damping, curve.damping, curve.slope_ratio
+        for velocity, slope in zip(curve.velocities, curve.ratios, strict=True):
+            drops = rebound * (1 - slope * bend), compression * (1 - slope)
+            rebound, compression, bend = rebound * slope * bend, compression * slope, 1.0
+            yield -drops[0] * curve.velocity_ratio * velocity, 0.0, drops[0], drops[0] > 0
             yield drops[1] * velocity, 0.0, drops[1], drops[1] < 0

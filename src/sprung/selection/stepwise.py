@@ -98,9 +98,8 @@ def select_further_terms(search: ModelSearch) -> ModelSearch:
             # A low-pass resembles knees, and so does whatever else is missing: it is looked for once nothing else shows.
             search = select_low_pass(search)
         if search.structure is before.structure:
-            search, fitted = _try_rivals(search, tried)
-            # What the likeliest of them has beaten may be needed beside it.
-            tried = tried | {*fitted} if search.structure is before.structure else tried - {*fitted}
+            # What the likeliest of them beats may be needed beside it: it is tried again in the next round.
+            search = _try_rivals(search, tried)
         if search.structure is before.structure:
             break
     return search
@@ -118,11 +117,11 @@ def _try_scored(search: ModelSearch, tried: Collection[str]) -> tuple[ModelSearc
     return confirm_low_pass(found) if accepted else found, best
 
 
-def _try_rivals(search: ModelSearch, tried: Collection[str]) -> tuple[ModelSearch, list[str]]:
-    """Fit the open terms that no score tells from each other, accept the likeliest if it is needed, and name them."""
+def _try_rivals(search: ModelSearch, tried: Collection[str]) -> ModelSearch:
+    """Fit the open terms that no score tells from each other, and accept the likeliest if it is needed."""
     rivals = _rivals([term for term in search.open_terms(tuple(TERMS)) if term not in tried])
     found = try_likeliest(search, rivals) if rivals else search
-    return found if found.structure is search.structure else confirm_low_pass(found), rivals
+    return found if found.structure is search.structure else confirm_low_pass(found)
 
 
 def _rivals(terms: Sequence[str]) -> list[str]:

@@ -11,7 +11,7 @@ from sprung.vehicle.characteristics import (
 )
 from sprung.vehicle.checked_record import UNKNOWN_KEY, checked_record, parse_record, problems_of_record
 from sprung.vehicle.curves import FORCE_CURVES, CurveElements
-from sprung.vehicle.damper_curve import CurveParts
+from sprung.vehicle.damper_curve import CurveParameters, CurveParts
 from sprung.vehicle.elements import (
     EXTRAS,
     LINEAR_EXTRAS,
@@ -114,6 +114,7 @@ __all__ = [
     "CarriedAt",
     "Characteristic",
     "CurveElements",
+    "CurveParameters",
     "CurveParts",
     "Element",
     "ElementInput",

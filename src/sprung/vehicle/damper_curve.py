@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import partial
-from typing import NamedTuple
+from itertools import accumulate
+from operator import mul
+from typing import Generic, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,6 +38,62 @@ class CurveParts(NamedTuple):
 _KNOTS_ALONE = CurveParts()
 """A curve of straight lines between knots that are alike in compression and rebound."""
 
+_ONE = np.ones(1)
+"""Of any shape: a ratio that changes nothing."""
+
+Value = TypeVar("Value")
+"""Of a parameter: a number, an array, or its name in another language."""
+
+
+@dataclass(frozen=True, slots=True)
+class CurveParameters(Generic[Value]):
+    """The parameters of the curve of a damper by their meaning, as numbers, arrays or names.
+
+    Attributes
+    ----------
+    damping
+        In compression before the first knot, N s/m.
+    ratio
+        Rebound over compression.
+    velocity_ratio, slope_ratio
+        Likewise of the knots' velocities, and of the slope after the first over that before it.
+    rounding
+        Half the width over which knots are rounded, m/s; None where they are not.
+    velocities, ratios
+        Of each knot its velocity, m/s, and the slope after it over that before it.
+    """
+
+    damping: Value
+    ratio: Value
+    velocity_ratio: Value
+    slope_ratio: Value
+    rounding: Value | None
+    velocities: Sequence[Value]
+    ratios: Sequence[Value]
+
+    @classmethod
+    def of(cls, parts: CurveParts, parameters: Sequence[Value], neutral: Value) -> CurveParameters[Value]:
+        """Sort the parameters of a law.
+
+        Parameters
+        ----------
+        parts
+            What the curve has besides knots.
+        parameters
+            In the order of `damper_curve`.
+        neutral
+            One, for what it has not.
+
+        Returns
+        -------
+        CurveParameters
+        """
+        damping, *further = parameters
+        ratio = further.pop(0) if parts.has_ratio else neutral
+        shift, bend = (further.pop(0), further.pop(0)) if parts.has_rebound_knee else (neutral, neutral)
+        rounding = further.pop(0) if parts.is_rounded else None
+        return cls(damping, ratio, shift, bend, rounding, further[::2], further[1::2])
+
 
 def damper_curve(parts: CurveParts = _KNOTS_ALONE) -> ForceLaw:
     """Return the law of what the knots of a damper's curve add to the force of a damper of constant rate.
@@ -62,74 +122,60 @@ class _Side(NamedTuple):
 
     damping: Array
     rounding: Array | None
-    velocities: list[Array]
-    ratios: list[Array]
+    velocities: Sequence[Array]
+    ratios: Sequence[Array]
+
+    @property
+    def slopes(self) -> list[Array]:
+        """The slope before each knot, as a part of the damping."""
+        return list(accumulate(self.ratios[:-1], mul, initial=_ONE))
+
+    @property
+    def drops(self) -> list[Array]:
+        """What each knot takes off the slope, as a part of the damping."""
+        return [slope * (1.0 - ratio) for slope, ratio in zip(self.slopes, self.ratios, strict=True)]
 
 
-class _Given(NamedTuple):
-    """The parameters of a curve by their meaning, neutral where it has none of a kind."""
-
-    damping: Array
-    ratio: Array | float
-    velocity_ratio: Array | float
-    slope_ratio: Array | float
-    rounding: Array | None
-    velocities: list[Array]
-    ratios: list[Array]
-
-    @classmethod
-    def of(cls, parts: CurveParts, parameters: Array) -> _Given:
-        """Sort the parameters of the law."""
-        damping, *further = parameters
-        ratio = further.pop(0) if parts.has_ratio else 1.0
-        shift, bend = (further.pop(0), further.pop(0)) if parts.has_rebound_knee else (1.0, 1.0)
-        rounding = further.pop(0) if parts.is_rounded else None
-        return cls(damping, ratio, shift, bend, rounding, further[::2], further[1::2])
-
-    def side(self, extends: NDArray[np.bool_]) -> _Side:
-        """Return the parameters of the side on which each element moves."""
-        shift = np.where(extends, self.velocity_ratio, 1.0)
-        first, *others = self.ratios
-        return _Side(
-            self.damping * np.where(extends, self.ratio, 1.0),
-            None if self.rounding is None else self.rounding * shift,
-            [velocity * shift for velocity in self.velocities],
-            [first * np.where(extends, self.slope_ratio, 1.0), *others],
-        )
+def _side(parts: CurveParts, own: CurveParameters[Array], extends: NDArray[np.bool_]) -> _Side:
+    """Return the parameters of the side on which each element moves."""
+    damping = own.damping * np.where(extends, own.ratio, 1.0) if parts.has_ratio else own.damping
+    if not parts.has_rebound_knee:
+        return _Side(damping, own.rounding, own.velocities, own.ratios)
+    shift, bend = np.where(extends, own.velocity_ratio, 1.0), np.where(extends, own.slope_ratio, 1.0)
+    first, *others = own.ratios
+    rounding = None if own.rounding is None else own.rounding * shift
+    return _Side(damping, rounding, [velocity * shift for velocity in own.velocities], [first * bend, *others])
 
 
 def _force(parts: CurveParts, parameters: Array, given: ElementInput) -> ElementForce:
     """Return what the knots take off the force of a damper of constant rate."""
-    side = _Given.of(parts, parameters).side(given.rate > 0)
+    side = _side(parts, CurveParameters.of(parts, list(parameters), _ONE), given.rate > 0)
     size, zero = np.abs(given.rate), np.zeros_like(given.travel)
-    before, missing, slope = zero + 1.0, zero, zero
-    for velocity, ratio in zip(side.velocities, side.ratios, strict=True):
+    missing, slope = zero, zero
+    for velocity, drop in zip(side.velocities, side.drops, strict=True):
         excess, by_size, _, _ = _knot(size, velocity, side.rounding)
-        drop = before * (1.0 - ratio)
-        missing, slope, before = missing + drop * excess, slope + drop * by_size, before * ratio
+        missing, slope = missing + drop * excess, slope + drop * by_size
     force = -side.damping * np.sign(given.rate) * missing
     return ElementForce(force, given.memory, zero, -side.damping * slope, zero, zero, zero)
 
 
 def _derivatives(parts: CurveParts, parameters: Array, given: ElementInput) -> tuple[Array, Array]:
     """Return the derivatives of the force by the parameters; it has no memory."""
-    own, extends = _Given.of(parts, parameters), given.rate > 0
-    side, size, zero = own.side(extends), np.abs(given.rate), np.zeros_like(given.travel)
-    knots = [_knot(size, velocity, side.rounding) for velocity in side.velocities]
-    slopes = np.cumprod(np.stack([zero + 1.0, *(zero + ratio for ratio in side.ratios)]), axis=0)
-    drops, excesses = slopes[:-1] - slopes[1:], [knot[0] for knot in knots]
-    missing = sum((drop * excess for drop, excess in zip(drops, excesses, strict=True)), zero)
-    unit = -np.sign(given.rate)
-    by_velocity = [side.damping * unit * drop * knot[2] for drop, knot in zip(drops, knots, strict=True)]
-    by_rounding = side.damping * unit * sum((drop * knot[3] for drop, knot in zip(drops, knots, strict=True)), zero)
+    own, extends = CurveParameters.of(parts, list(parameters), _ONE), given.rate > 0
+    side, size, zero = _side(parts, own, extends), np.abs(given.rate), np.zeros_like(given.travel)
+    knots, drops = [_knot(size, velocity, side.rounding) for velocity in side.velocities], side.drops
+    lost = [drop * knot[0] for drop, knot in zip(drops, knots, strict=True)]
+    unit, missing = -np.sign(given.rate), sum(lost, zero)
+    whole = unit * side.damping
+    by_velocity = [whole * drop * knot[2] for drop, knot in zip(drops, knots, strict=True)]
     # Behind a knot all slopes have its ratio as a factor.
     by_ratio = [
-        side.damping
-        * unit
-        * (sum((drops[k] * excesses[k] for k in range(i + 1, len(drops))), zero) / ratio - slopes[i] * excesses[i])
-        for i, ratio in enumerate(side.ratios)
+        whole * (sum(lost[i + 1 :], zero) / ratio - slope * knots[i][0])
+        for i, (ratio, slope) in enumerate(zip(side.ratios, side.slopes, strict=True))
     ]
-    shift = np.where(extends, own.velocity_ratio, 1.0)
+    by_rounding = zero
+    if parts.is_rounded:
+        by_rounding = whole * sum((drop * knot[3] for drop, knot in zip(drops, knots, strict=True)), zero)
     force = [unit * missing * np.where(extends, own.ratio, 1.0)]
     if parts.has_ratio:
         force.append(own.damping * unit * missing * extends)
@@ -137,11 +183,13 @@ def _derivatives(parts: CurveParts, parameters: Array, given: ElementInput) -> t
         shifted = sum((one * velocity for one, velocity in zip(by_velocity, own.velocities, strict=True)), zero)
         shifted += 0.0 if own.rounding is None else by_rounding * own.rounding
         force += [shifted * extends, by_ratio[0] * own.ratios[0] * extends]
+        shift = np.where(extends, own.velocity_ratio, 1.0)
+        by_velocity, by_rounding = [one * shift for one in by_velocity], by_rounding * shift
+        by_ratio[0] = by_ratio[0] * np.where(extends, own.slope_ratio, 1.0)
     if parts.is_rounded:
-        force.append(by_rounding * shift)
-    by_ratio[0] = by_ratio[0] * np.where(extends, own.slope_ratio, 1.0)
+        force.append(by_rounding)
     for of_velocity, of_ratio in zip(by_velocity, by_ratio, strict=True):
-        force += [of_velocity * shift, of_ratio]
+        force += [of_velocity, of_ratio]
     return np.stack(force), np.zeros((len(force), *size.shape))
 
 
