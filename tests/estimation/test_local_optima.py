@@ -82,3 +82,18 @@ def test_a_step_to_an_unstable_vehicle_gains_nothing_and_warns_of_nothing() -> N
     unstable = fit.iterate.at.moved(fit.problem.priors.coordinates.values(fit.iterate.u + step))
     assert [record.shape for record in unstable.fitted] == [decay.values.shape for decay in fit.decays]
     assert not any(record.any() for record in unstable.fitted)
+
+
+def test_a_start_that_grows_beyond_all_bounds_is_begun_without_what_makes_it_grow() -> None:
+    """A relaxing rate below zero: its force grows by e in 25 ms, for seconds."""
+    relaxing = {"k_xf": -2000.0, "k_xr": 0.0, "c_xf": 50.0, "c_xr": 50.0}
+    campaign = simulate(TABLE_1_CAR, noise=0.02, seed=1, known={"total_mass": TABLE_1_CAR.total_mass})
+    structure = choose_structure(campaign, "shared", ("interconnection",))
+    decays = prepare(campaign).decays
+
+    def found(start: dict[str, float]) -> float:
+        return fit_linear(
+            decays, structure.linear_models, campaign.sensors, structure.known, start=TABLE_1_CAR.parameters | start
+        ).loglikelihood
+
+    np.testing.assert_allclose(found(relaxing), found(relaxing | {"k_xf": 0.0}), atol=1e-3)

@@ -36,6 +36,7 @@ from sprung.vehicle import (
     Sensor,
     is_nuisance,
     layout_of,
+    parameter_of,
     parameter_name,
     separate_track_names,
 )
@@ -189,7 +190,13 @@ def _fit_from(
     problem: EstimationProblem, values: Mapping[str, float], enough: float, most: int = MOST_STEPS
 ) -> FitResult:
     u = problem.priors.project(problem.priors.coordinates.from_parameters(values))
-    return _best(problem, [problem.maximise(u, None, enough, CLOSE_BY, most)], enough)
+    end = problem.maximise(u, None, enough, CLOSE_BY, most)
+    if not np.isfinite(problem.cost(end.point)):
+        # A rate that another fit found below zero may make a motion that grows beyond all bounds in this one.
+        bounded = {name: value if parameter_of(name).signed else max(value, 0.0) for name, value in values.items()}
+        u = problem.priors.project(problem.priors.coordinates.from_parameters(bounded))
+        end = problem.maximise(u, None, enough, CLOSE_BY, most)
+    return _best(problem, [end], enough)
 
 
 def _best(problem: EstimationProblem, ends: Sequence[Maximum[Iterate]], enough: float) -> FitResult:
