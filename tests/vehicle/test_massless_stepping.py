@@ -97,7 +97,7 @@ def test_derivatives_are_those_of_the_steps_themselves(monkeypatch: pytest.Monke
     trajectory = before.integrate(states, memories, steps)
     outputs = 22 + before.forces.number
     found = np.stack(
-        list(differentiate_motions(before, trajectory, np.eye(outputs)[None], 1)[0]), axis=1
+        [differentiate_motions(before, trajectory, np.eye(outputs)[None], 1)[0](0)], axis=1
     )  # step, drop, output, unknown
     for unknown, value in enumerate(values):
         ends = []

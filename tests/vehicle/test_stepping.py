@@ -227,8 +227,8 @@ def test_derivatives_are_those_of_the_steps_themselves(ground: bool) -> None:
     trajectory = before.integrate(states, memories, steps)
     outputs = 14 + before.forces.number
     every_output = np.broadcast_to(np.eye(outputs), (2, outputs, outputs))
-    by_drop, starts, _ = differentiate_motions(before, trajectory, every_output, 1)
-    found = np.stack(list(by_drop), axis=1)
+    of_drop, starts, _ = differentiate_motions(before, trajectory, every_output, 1)
+    found = np.stack([of_drop(drop) for drop in range(2)], axis=1)
     assert found.shape == (steps + 1, 2, outputs, len(names) + 22)
     number, length = segments_of(steps, 1)
     assert 1 < number < number * length

@@ -36,8 +36,8 @@ from sprung.vehicle import (
     Sensor,
     is_nuisance,
     layout_of,
-    parameter_of,
     parameter_name,
+    parameter_of,
     separate_track_names,
 )
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -156,14 +158,16 @@ class SteppedMotion:
             units = np.eye(outputs.shape[2])[objective.angles]
             angles = np.broadcast_to(units, (len(outputs), *units.shape))
             outputs = np.concatenate([outputs, angles], axis=1)
-        moved_drops, starts, transitions = differentiate_motions(
-            self.stepper, self.trajectory, outputs, objective.every
-        )
-        products, at_samples = [], self._inputs(objective.every)
-        for drop, (moved, samples) in enumerate(zip(moved_drops, objective.samples, strict=True)):
-            inputs, readings = at_samples[:samples, drop], moved[:samples, :channels]
+        of_drop, starts, transitions = differentiate_motions(self.stepper, self.trajectory, outputs, objective.every)
+        at_samples = self._inputs(objective.every)
+
+        def products_of(drop: int) -> list[Real]:
+            """Return the products of each window, shape (channel, unknown + 1, unknown + 1)."""
+            samples = objective.samples[drop]
+            moved, inputs = of_drop(drop)[:samples], at_samples[:samples, drop]
+            readings = moved[:, :channels]
             if self._gravity is not None:
-                readings -= self._gravity * (inputs[:, None, self.objective.angles] @ moved[:samples, channels:])
+                readings -= self._gravity * (inputs[:, None, self.objective.angles] @ moved[:, channels:])
             # The unknowns of the sensors come between the parameters of the model and the initial states.
             readings = np.insert(readings, [shared] * (len(self.values) - shared), 0.0, axis=2)
             by_sensor = np.moveaxis(inputs @ np.swapaxes(direct[objective.kind[drop]], 1, 2), 0, 2)
@@ -178,9 +182,18 @@ class SteppedMotion:
             by_sample = readings.reshape(samples, -1)
             by_sample -= free @ (free.T @ by_sample)
             columns[..., :-1] = np.swapaxes(readings, 0, 1)
-            columns[..., -1] = self.residuals[drop, :, :samples]
+            columns[..., -1] = residuals[drop, :, :samples]
             ends = (objective.decays[drop].rate * _FIRST_WINDOW * 2.0 ** np.arange(_WINDOWS - 1)).astype(np.int64)
             windows = np.split(columns, np.minimum(ends, samples), axis=1)
-            products.append([np.swapaxes(window, 1, 2) @ window for window in windows])
+            return [np.swapaxes(window, 1, 2) @ window for window in windows]
+
+        def of_finite(drop: int) -> list[Real]:
+            with np.errstate(over="ignore", invalid="ignore"):  # of this thread
+                return products_of(drop)
+
+        residuals = self.residuals
+        # Each drop may have a processor of its own.
+        with ThreadPoolExecutor(os.cpu_count()) as pool:
+            products = list(pool.map(of_finite, range(len(at_samples[0]))))
         by_window = np.swapaxes(np.array(products), 0, 1) * objective.channel_weights[:, :, None, None]
         return by_window, starts, transitions

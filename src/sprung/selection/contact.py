@@ -23,6 +23,8 @@ _STEPPED = 1e-3
 """Expected gain in log-likelihood at which a fit by time stepping has converged: a twentieth of a standard error, of which
 the last step leaves less. Forces are solved for to a part of their size, so the likelihood is no smoother."""
 
+_SETTLED = 0.03
+"""The same as a part of the overdispersion, of a model with errors: a sixth of a standard error."""
 
 ON_THE_WAY = 1.0
 """Expected gain in log-likelihood at which a fit ends beside which further terms are tried: each has to gain many times it."""
@@ -67,7 +69,7 @@ def final_tolerance(search: ModelSearch) -> float:
     if not search.structure.is_time_stepped:
         return CONVERGED
     # Where the model has errors, statements about the vehicle move the fit again, once its overdispersion is known.
-    return _STEPPED if search.overdispersion == 1 else NEAR * search.overdispersion
+    return _STEPPED if search.overdispersion == 1 else _SETTLED * search.overdispersion
 
 
 def is_likelier(search: ModelSearch, other: ModelSearch) -> bool:

@@ -148,9 +148,10 @@ def fit_linear_term(search: ModelSearch, term: str) -> ModelSearch:
 
 
 def begin_nonlinear_fit(search: ModelSearch, larger: ModelStructure) -> FitResult:
-    """Take the first steps of the fit of a nonlinear model to the beginnings of the decays."""
+    """Take the first steps of the fit of a nonlinear model to the beginnings of the decays, until they tell models apart."""
+    enough = max(NEAR, search.overdispersion)
     return fit_structure(
-        larger, search.decays, search.fit, NEAR, search.progress, beginning_only=True, most=_FIRST_ITERATIONS
+        larger, search.decays, search.fit, enough, search.progress, beginning_only=True, most=_FIRST_ITERATIONS
     )
 
 
@@ -227,4 +228,7 @@ def select_gravity_leakage(search: ModelSearch) -> ModelSearch:
         search.refit(replace(search.structure, gravity_leakage=leaks), most=_ITERATIONS_OF_SWITCH, enough=NEAR)
         for leaks in (False, True)
     )
-    return other.refit(other.structure) if other.gain_over(same) > search.required_of_switch else search
+    if other.gain_over(same) > search.required_of_switch:
+        return other.refit(other.structure)
+    # One step more from a fit that has converged leaves it so.
+    return replace(same, fit=replace(same.fit, converged=search.fit.converged))

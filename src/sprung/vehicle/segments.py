@@ -31,6 +31,10 @@ _CLOSED = 1e-6
 """Gap between segments, as a part of the largest state, that is none: less is below what the forces of a step are solved to."""
 
 
+_NEARLY = 3e-5
+"""Differences of forces, as a part of the largest, that are corrected without another evaluation."""
+
+
 class NearbyMotion(NamedTuple):
     """What is known of motions from others nearby.
 
@@ -133,7 +137,7 @@ def integrate_near(
     error = 1.0
     for left in reversed(range(_MOST_PASSES)):
         begin = starts[slots].reshape(len(slots), -1, starts.shape[2])
-        motions, kept = stepper.follow(begin[..., :state], begin[..., state:], length, similar=similar)
+        motions, kept = stepper.follow(begin[..., :state], begin[..., state:], length, similar=similar, nearly=_NEARLY)
         similar = motions[..., state:-1]
         ends = by_drop(np.concatenate([motions[-1:, ..., :state], kept[-1:]], axis=3))[:, :, 0]
         changes = np.zeros_like(starts)

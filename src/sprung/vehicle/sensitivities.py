@@ -9,7 +9,7 @@ the changes of these states are put together afterwards (multiple shooting; H. G
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
@@ -25,7 +25,7 @@ Index = NDArray[np.int64]
 
 def differentiate_motions(
     stepper: Stepper, trajectory: Trajectory, outputs: Array, every: int
-) -> tuple[Iterator[Array], Array, Array]:
+) -> tuple[Callable[[int], Array], Array, Array]:
     """Differentiate motions and what is read of them by the parameters, the initial states and the initial memories.
 
     Parameters
@@ -43,7 +43,7 @@ def differentiate_motions(
     Returns
     -------
     outputs
-        Derivatives of the outputs of each drop in turn, shape (sample, output, unknown), the unknowns in this order.
+        Derivatives of the outputs of a drop, by its position, shape (sample, output, unknown), the unknowns in this order.
     starts
         Those of state and memories at the start of each segment, shape (drop, segment, start, unknown).
     transitions
@@ -76,15 +76,15 @@ def differentiate_motions(
         starts[:, segment] = end[..., :start] @ starts[:, segment - 1]
         starts[:, segment, :, :parameters] += end[..., start:]
 
-    def of_drops() -> Iterator[Array]:
-        for drop, first in enumerate(slot * number):
-            own = readings[kind[drop]][:, 0, :, first : first + number]
-            local = np.moveaxis(own, 2, 0).reshape(number, -1, own.shape[-1])
-            whole = local[..., :start] @ starts[drop]
-            whole[..., :parameters] += local[..., start:]
-            yield whole.reshape(-1, outputs.shape[1], start + parameters)[:samples]
+    def of_drop(drop: int) -> Array:
+        first = slot[drop] * number
+        own = readings[kind[drop]][:, 0, :, first : first + number]
+        local = np.moveaxis(own, 2, 0).reshape(number, -1, own.shape[-1])
+        whole: Array = local[..., :start] @ starts[drop]
+        whole[..., :parameters] += local[..., start:]
+        return whole.reshape(-1, outputs.shape[1], start + parameters)[:samples]
 
-    return of_drops(), starts, ends[..., :start]
+    return of_drop, starts, ends[..., :start]
 
 
 def _cut(stepper: Stepper, trajectory: Trajectory, number: int, length: int) -> tuple[Array, ElementInput]:

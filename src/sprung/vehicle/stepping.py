@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.vehicle.force_laws import ElementForce, ElementInput
+from sprung.vehicle.force_laws import ElementInput
 from sprung.vehicle.nonlinear import NonlinearForces, NonlinearModel
 
 Array = NDArray[np.float64]
@@ -186,7 +186,13 @@ class Stepper:
         return Trajectory(whole[:, kind, slot, :state], whole[:, kind, slot, state:-1], kept[:, kind, slot])
 
     def follow(
-        self, states: Array, memories: Array, steps: int, drive: StepDrive | None = None, similar: Array | None = None
+        self,
+        states: Array,
+        memories: Array,
+        steps: int,
+        drive: StepDrive | None = None,
+        similar: Array | None = None,
+        nearly: float = 0.0,
     ) -> tuple[Array, Array]:
         """Follow motions that are arranged by kind.
 
@@ -200,6 +206,9 @@ class Stepper:
             What moves the vehicle from outside, arranged likewise.
         similar
             Forces of similar motions, N, shape (step + 1, kind, motion, row).
+        nearly
+            Difference of forces from those that they were evaluated with, as a part of the largest, whose correction is not
+            evaluated again: it leaves about the square of it, where no kink lies between.
 
         Returns
         -------
@@ -229,17 +238,19 @@ class Stepper:
             if drive is not None:
                 at_start += drive.inputs[0]
             held = _feedback(self.directly_by_force, forces)
-            found, travel = self._solve(at_start, at_start[..., :rows], memories, alike[0], held)
-            force = before = motions[0, ..., state:-1] = found.force
+            force, _, travel = self._solve(at_start, at_start[..., :rows], memories, alike[0], held, nearly)
+            before = motions[0, ..., state:-1] = force
             for k in range(steps):
                 np.matmul(motions[k], predictor, out=predicted)
                 if drive is not None:
                     predicted[..., :state] += drive.increments[k]
                     predicted[..., state:] += drive.increments[k] @ by_state + drive.inputs[k + 1]
                 expected = 2 * force - before + turns[k]
-                found, travel = self._solve(predicted[..., state:], travel, kept[k], expected, feedback)
-                before, force, end = force, found.force, motions[k + 1]
-                end[..., state:-1], kept[k + 1] = force, found.memory
+                before, end = force, motions[k + 1]
+                force, kept[k + 1], travel = self._solve(
+                    predicted[..., state:], travel, kept[k], expected, feedback, nearly
+                )
+                end[..., state:-1] = force
                 np.add(predicted[..., :state], force @ by_force, out=end[..., :state])
         return motions, kept
 
@@ -250,8 +261,9 @@ class Stepper:
         memories: Array,
         force: Array,
         feedback: tuple[Array, Array, Array, Array],
-    ) -> tuple[ElementForce, Array]:
-        """Return forces and travels that depend on each other.
+        nearly: float,
+    ) -> tuple[Array, Array, Array]:
+        """Return forces, memories and travels that depend on each other.
 
         Parameters
         ----------
@@ -263,6 +275,8 @@ class Stepper:
             The forces to begin with, shape (kind, slot, row).
         feedback
             What the forces add to travels and rates, from `_feedback`.
+        nearly
+            As for `follow`.
         """
         rows, memory_rows = force.shape[-1], self.forces.memory_rows
         by_force, own_travel, own_rate, memory_travel = feedback
@@ -273,7 +287,8 @@ class Stepper:
             given = ElementInput(travel, end[..., rows:], travel - before, memories)
             found = self.forces.evaluate(self.parameters, given)
             error = found.force - force
-            if not left or not np.abs(error).max(initial=0.0) > _SOLVED * np.abs(found.force).max(initial=0.0):
+            size, largest = np.abs(error).max(initial=0.0), np.abs(found.force).max(initial=0.0)
+            if not left or not size > _SOLVED * largest:
                 break
             # Newton's correction takes the effect of a force on its own travel and rate first, then that of all on all others.
             slope = found.by_travel * own_travel + found.by_rate * own_rate
@@ -291,7 +306,11 @@ class Stepper:
                 secant = error * (force - earlier[0]) / np.where(passed, earlier[1] - error, 1.0)
                 correction = np.where(passed, secant, correction)
             earlier, force = (force, error), force + correction
-        return found, travel
+            if size < nearly * largest:
+                moved = correction @ by_force
+                change = found.memory_by_travel * moved[..., memory_rows]
+                return force, found.memory + change, travel + moved[..., :rows]
+        return found.force, found.memory, travel
 
 
 def _feedback(by_force: Array, forces: NonlinearForces) -> tuple[Array, Array, Array, Array]:
