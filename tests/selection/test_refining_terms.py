@@ -9,6 +9,13 @@ import pytest
 
 import sprung
 from sprung.campaign import ModelChoice
+from sprung.estimation import fit_linear
+from sprung.preprocess import prepare
+from sprung.progress import silent
+from sprung.selection import stepwise
+from sprung.selection.search import ModelSearch
+from sprung.selection.starts import fit_structure
+from sprung.selection.structure import choose_structure
 from sprung.vehicle import EXTRAS, TABLE_1_CAR, Vehicle
 
 BALLAST = {"name": "ballast", "items": [{"mass": 300.0, "position": [-2.0, 0.2, 0.6]}]}
@@ -29,19 +36,23 @@ _OPEN = (
 )
 
 
-def identified(
-    more: dict[str, float], *loads: str, extras: tuple[str, ...] | None = None
-) -> tuple[Vehicle, sprung.Result]:
-    """Simulate and identify a car; the recordings decide about friction, dampers and springs."""
-    car = Vehicle.from_parameters(TABLE_1_CAR.parameters | more)
+def simulated(car: Vehicle, *loads: str) -> sprung.Campaign:
+    """Simulate a car whose recordings are to decide about friction, dampers and springs."""
     wheels = (["fl", "fr"], ["rl", "rr"], ["fl", "rl"])
     drops = [{"wheels": one, "load": load} for one in wheels for load in loads]
     campaign = sprung.simulate(
         car, loads=[BALLAST], drops=drops, rate=250, duration=1.8, seed=2, known={"total_mass": car.total_mass}
     )
     forbidden = tuple(extra for extra in EXTRAS if extra not in (*_OPEN, "seat-load"))
-    campaign = replace(campaign, model=ModelChoice(tracks="shared", forbid=forbidden))
-    return car, sprung.identify(campaign, fall=False, extras=extras)
+    return replace(campaign, model=ModelChoice(tracks="shared", forbid=forbidden))
+
+
+def identified(
+    more: dict[str, float], *loads: str, extras: tuple[str, ...] | None = None
+) -> tuple[Vehicle, sprung.Result]:
+    """Simulate and identify a car."""
+    car = Vehicle.from_parameters(TABLE_1_CAR.parameters | more)
+    return car, sprung.identify(simulated(car, *loads), fall=False, extras=extras)
 
 
 def deviations(car: Vehicle, result: sprung.Result) -> dict[str, float]:
@@ -108,6 +119,22 @@ def test_a_knee_of_rebound_is_selected_and_shown() -> None:
     truth = 1500.0 * np.array([-(0.08 + 0.4 * 0.07), -0.05, 1.6 * 0.05, 1.6 * (0.056 + 0.52 * 0.094)])
     found = curve.at(speed)
     assert np.all(np.abs(found.force - truth) < 5 * np.asarray(found.std))
+
+
+@pytest.mark.slow
+def test_friction_that_shows_in_no_score_is_tried_once_nothing_else_is_needed(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As where a fit of everything at once lost it."""
+    car = Vehicle.from_parameters(TABLE_1_CAR.parameters | RUBBING | ONE_KNEE)
+    campaign = simulated(car, "empty")
+    plain = choose_structure(campaign, "shared")
+    curved = plain.with_terms(("damper-curve",))
+    decays = prepare(campaign).decays
+    first = fit_linear(decays, plain.linear_models, campaign.sensors, plain.known, start=TABLE_1_CAR.parameters)
+    search = ModelSearch(curved, fit_structure(curved, decays, first, 1.0, silent), decays)
+    monkeypatch.setattr(stepwise, "score_terms", lambda search, terms: (search, dict.fromkeys(terms, (0.0, 0.0))))
+    found = stepwise.select_further_terms(search)
+    assert "friction" in found.structure.terms
+    assert abs(found.fit.parameters["F_r"] / car.parameters["F_r"] - 1) < 0.05
 
 
 @pytest.mark.long

@@ -99,7 +99,12 @@ def select_further_terms(search: ModelSearch) -> ModelSearch:
             search = select_low_pass(search)
         if search.structure is before.structure:
             # What the likeliest of them beats may be needed beside it: it is tried again in the next round.
-            search = _try_rivals(search, tried)
+            search = _accept_rival(search, _rivals(_untried(search, tried)))
+        if search.structure is before.structure:
+            # A friction that a fit of everything at once had lost shows in no score, but once the rest is right. Beside it what
+            # was refused without it may be needed.
+            search = _accept_rival(search, [term for term in _untried(search, tried) if TERMS[term].resembles_others])
+            tried = frozenset()
         if search.structure is before.structure:
             break
     return search
@@ -107,7 +112,7 @@ def select_further_terms(search: ModelSearch) -> ModelSearch:
 
 def _try_scored(search: ModelSearch, tried: Collection[str]) -> tuple[ModelSearch, list[str]]:
     """Try open terms by their scores until one is accepted, but for those that no score tells from others; name the best."""
-    untried = [term for term in search.open_terms(tuple(TERMS)) if term not in tried]
+    untried = _untried(search, tried)
     rivals = _rivals(untried)
     terms = [term for term in untried if term not in rivals]
     _, scores = score_terms(search, terms)
@@ -117,10 +122,14 @@ def _try_scored(search: ModelSearch, tried: Collection[str]) -> tuple[ModelSearc
     return confirm_low_pass(found) if accepted else found, best
 
 
-def _try_rivals(search: ModelSearch, tried: Collection[str]) -> ModelSearch:
-    """Fit the open terms that no score tells from each other, and accept the likeliest if it is needed."""
-    rivals = _rivals([term for term in search.open_terms(tuple(TERMS)) if term not in tried])
-    found = try_likeliest(search, rivals) if rivals else search
+def _untried(search: ModelSearch, tried: Collection[str]) -> list[str]:
+    """Return the open terms that are still to be tried."""
+    return [term for term in search.open_terms(tuple(TERMS)) if term not in tried]
+
+
+def _accept_rival(search: ModelSearch, terms: Sequence[str]) -> ModelSearch:
+    """Fit terms that no score tells from each other, and accept the likeliest if it is needed."""
+    found = try_likeliest(search, terms) if terms else search
     return found if found.structure is search.structure else confirm_low_pass(found)
 
 
