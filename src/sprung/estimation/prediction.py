@@ -79,7 +79,7 @@ def predictions(fit: FitResult) -> tuple[Prediction, ...]:
     squares = fitted - 2 * np.sum(gradients * along, axis=1) + np.sum(along * turned, axis=1)
     for drop in np.flatnonzero(squares > (1 + _SLIGHT) * fitted).tolist():
         values = problem.priors.coordinates.values(problem.priors.project(optimum.u + null_space @ along[drop]))
-        alone = optimum.at.moved(values).of_drop(drop).with_optimal_states()
+        alone = optimum.at.of_drop(drop).moved(values).with_optimal_states()
         squares[drop] = float(alone.residual_sums[0] @ alone.weights)
     within, scales = _transposed(kept) @ informations @ kept, np.sqrt(variances)
     growth = np.maximum(np.linalg.eigvalsh(scales[:, :, None] * within * scales[:, None]), 0.0)

@@ -91,7 +91,9 @@ class TimeSteppingAt:
     def of_drop(self, drop: int) -> TimeSteppingAt:
         """Return the likelihood of one drop alone, by its position."""
         alone = self.objective.with_decays([self.objective.decays[drop]])
-        return alone.at_states(self.values, self.weights, self.stepped.begin[[drop]])
+        if alone.every != self.objective.every:  # beside drops of a lower rate it takes shorter steps
+            return alone.at_states(self.values, self.weights, self.stepped.begin[[drop]])
+        return replace(self, stepped=self.stepped.of_drop(drop, alone))
 
     @property
     def penalty(self) -> float:

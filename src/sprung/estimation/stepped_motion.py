@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -46,6 +46,13 @@ class SteppedMotion:
     begin: Real
     stepper: Stepper
     trajectory: Trajectory
+
+    def of_drop(self, drop: int, alone: TimeSteppingObjective) -> SteppedMotion:
+        """Return the motion of one drop, by its position, with an objective of it alone that takes the same steps."""
+        stepper = replace(self.stepper.of_kind(self.stepper.kind[drop]), kind=np.zeros(1, dtype=np.int64))
+        steps = alone.every * (alone.samples[0] - 1)
+        trajectory = Trajectory(*(part[: steps + 1, [drop]] for part in self.trajectory))
+        return SteppedMotion(alone, self.values, self.begin[[drop]], stepper, trajectory)
 
     def predict(self, change: Real) -> NearbyMotion:
         """Predict the motions after a small change of the model's parameters and initial states, shape (drop, unknown)."""

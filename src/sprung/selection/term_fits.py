@@ -149,10 +149,15 @@ def fit_linear_term(search: ModelSearch, term: str) -> ModelSearch:
 
 def begin_nonlinear_fit(search: ModelSearch, larger: ModelStructure) -> FitResult:
     """Take the first steps of the fit of a nonlinear model to the beginnings of the decays, until they tell models apart."""
-    enough = max(NEAR, search.overdispersion)
+    enough = _enough_to_compare(search)
     return fit_structure(
         larger, search.decays, search.fit, enough, search.progress, beginning_only=True, most=_FIRST_ITERATIONS
     )
+
+
+def _enough_to_compare(search: ModelSearch) -> float:
+    """Return the expected gain in log-likelihood at which a fit to beginnings ends: what is left tells no models apart."""
+    return max(NEAR, search.overdispersion)
 
 
 def fit_nonlinear_term(search: ModelSearch, larger: ModelStructure, first: FitResult) -> ModelSearch | None:
@@ -170,7 +175,8 @@ def fit_nonlinear_term(search: ModelSearch, larger: ModelStructure, first: FitRe
     if search.leaves_misfit(first, MISFIT_LEFT_AT_FIRST):
         return None
     if not first.converged:
-        first = fit_structure(larger, search.decays, first, NEAR, search.progress, beginning_only=True)
+        enough = _enough_to_compare(search)
+        first = fit_structure(larger, search.decays, first, enough, search.progress, beginning_only=True)
     if not search.structure.is_nonlinear and search.leaves_misfit(first, MISFIT_LEFT):
         larger, first = _refined(search, larger, first)
         if search.leaves_misfit(first, MISFIT_LEFT):
