@@ -26,11 +26,12 @@ the last step leaves less. Forces are solved for to a part of their size, so the
 _SETTLED = 0.03
 """The same as a part of the overdispersion, of a model with errors: a sixth of a standard error."""
 
-ON_THE_WAY = 1.0
-"""Expected gain in log-likelihood at which a fit ends beside which further terms are tried: each has to gain many times it."""
+_ON_THE_WAY = 1.0
+"""Expected gain in log-likelihood, as a part of the overdispersion, at which a fit ends beside which further terms are tried:
+each has to gain many times it."""
 
 
-def from_contact(search: ModelSearch, most: int = MOST_STEPS, enough: float | None = None) -> ModelSearch:
+def from_contact(search: ModelSearch, most: int = MOST_STEPS, on_the_way: bool = False) -> ModelSearch:
     """Let every decay begin where all tyres of the fitted vehicle stay on the ground, and fit again.
 
     Parameters
@@ -39,14 +40,14 @@ def from_contact(search: ModelSearch, most: int = MOST_STEPS, enough: float | No
         The present model and its fit, of the decays or of their beginnings.
     most
         Largest number of iterations.
-    enough
-        Expected gain in log-likelihood at which to stop; without it where a result may be taken from the fit.
+    on_the_way
+        Whether further terms are to be tried beside the fit, so that it need not end where a result may be taken from it.
 
     Returns
     -------
     ModelSearch
     """
-    enough = final_tolerance(search) if enough is None else enough
+    enough = _ON_THE_WAY * search.overdispersion if on_the_way else final_tolerance(search)
     decays, fit = fit_from_contact(
         search.decays, search.structure.linear_models, search.fit, lambda *start: _refit(search, enough, most, *start)
     )

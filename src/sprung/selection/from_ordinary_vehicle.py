@@ -11,7 +11,7 @@ from dataclasses import replace
 
 from sprung.estimation import fit_linear
 from sprung.progress import Step
-from sprung.selection.contact import ON_THE_WAY, from_contact
+from sprung.selection.contact import from_contact
 from sprung.selection.error_budget import MISFIT_LEFT, MISFIT_LEFT_AT_FIRST
 from sprung.selection.linear_terms import BENDING, TWIST
 from sprung.selection.ordinary_vehicle import (
@@ -91,7 +91,7 @@ def select_from_ordinary_vehicle(search: ModelSearch, plain: ModelStructure) -> 
         against = "together they do not explain what the model so far leaves"
         return search.recorded(dict.fromkeys(terms, 0.0), True, False, against)
     found = _without_unneeded(found)
-    return select_further_terms(from_contact(found, enough=ON_THE_WAY))
+    return select_further_terms(from_contact(found, on_the_way=True))
 
 
 def _fit_ordinary(search: ModelSearch, rich: ModelStructure) -> ModelSearch | None:

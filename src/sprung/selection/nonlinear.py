@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 from sprung.progress import Step
-from sprung.selection.contact import ON_THE_WAY, from_contact, is_likelier
+from sprung.selection.contact import from_contact, is_likelier
 from sprung.selection.from_ordinary_vehicle import select_from_ordinary_vehicle
 from sprung.selection.linear_terms import ENGINE
 from sprung.selection.scoring import score_terms
@@ -92,4 +92,4 @@ def _from_base(base: ModelSearch, terms: Sequence[str]) -> ModelSearch:
     found = try_likeliest(base, terms)
     if found.structure.names == base.structure.names:
         return found
-    return select_further_terms(from_contact(found, enough=ON_THE_WAY))
+    return select_further_terms(from_contact(found, on_the_way=True))

@@ -54,6 +54,11 @@ def _air_springs(name: str, height: str, levelled: str) -> ModelTerm:
     )
 
 
+def _usual_rounding(own: Values, _: ModelStructure) -> Values:
+    """Return over which velocities the knees of dampers are usually rounded: a valve opens little by little."""
+    return {f"w_k{axle}": _ROUNDING * own.get(f"v_k{axle}", _KNEE) for axle in axles_of(own)}
+
+
 def _further_knee(number: int, word: str, before: str, ratio: str) -> ModelTerm:
     """Return the term of a further knee of the damper curves; of the one before, the velocity's index, the ratio's symbol."""
 
@@ -183,7 +188,8 @@ NONLINEAR_TERMS = (
             again="{axle} ones over {0}",
         ),
         is_stationary=True,
-        first=lambda own, _: {f"w_k{axle}": _ROUNDING * own.get(f"v_k{axle}", _KNEE) for axle in axles_of(own)},
+        first=_usual_rounding,
+        usual=_usual_rounding,
     ),
     _further_knee(2, "second", "k", "q"),
     _further_knee(3, "third", "2", "q_2"),
