@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -150,7 +151,7 @@ class SteppedMotion:
     def _linearise(self) -> tuple[Real, Real, Real]:
         objective = self.objective
         S, by_S = objective.sensors.at(self.values), objective.sensors.slopes(self.values)
-        channels, shared = len(S), objective.sensors.shared
+        shared = objective.sensors.shared
         by_kind = [model.accelerations(self.values) for model in objective.models_by_kind]
         observed = [
             objective.sensors.observed_of_states(rows, model.linear.massive)
@@ -166,10 +167,32 @@ class SteppedMotion:
             angles = np.broadcast_to(units, (len(outputs), *units.shape))
             outputs = np.concatenate([outputs, angles], axis=1)
         of_drop, starts, transitions = differentiate_motions(self.stepper, self.trajectory, outputs, objective.every)
-        at_samples = self._inputs(objective.every)
+        products_of = partial(self._products_of_drop, self._inputs(objective.every), direct, of_drop)
+        # Each drop may have a processor of its own.
+        with ThreadPoolExecutor(os.cpu_count()) as pool:
+            products = list(pool.map(products_of, range(len(objective.decays))))
+        by_window = np.swapaxes(np.array(products), 0, 1) * objective.channel_weights[:, :, None, None]
+        return by_window, starts, transitions
 
-        def products_of(drop: int) -> list[Real]:
-            """Return the products of each window, shape (channel, unknown + 1, unknown + 1)."""
+    def _products_of_drop(
+        self, at_samples: Real, direct: Sequence[Real], of_drop: Callable[[int], Real], drop: int
+    ) -> list[Real]:
+        """Return the products of one drop in each window, shape (channel, unknown + 1, unknown + 1).
+
+        Parameters
+        ----------
+        at_samples
+            {X, Ẋ, u, 1} at each sample, shape (time, drop, input).
+        direct
+            By kind of step, what each parameter changes in the readings of the same motion, shape (parameter, channel, input).
+        of_drop
+            What the unknowns change in the readings of a drop by its motion, from `differentiate_motions`.
+        drop
+            Its position.
+        """
+        objective = self.objective
+        channels, shared = len(objective.energy), objective.sensors.shared
+        with np.errstate(over="ignore", invalid="ignore"):  # of this thread
             samples = objective.samples[drop]
             moved, inputs = of_drop(drop)[:samples], at_samples[:samples, drop]
             readings = moved[:, :channels]
@@ -189,18 +212,7 @@ class SteppedMotion:
             by_sample = readings.reshape(samples, -1)
             by_sample -= free @ (free.T @ by_sample)
             columns[..., :-1] = np.swapaxes(readings, 0, 1)
-            columns[..., -1] = residuals[drop, :, :samples]
+            columns[..., -1] = self.residuals[drop, :, :samples]
             ends = (objective.decays[drop].rate * _FIRST_WINDOW * 2.0 ** np.arange(_WINDOWS - 1)).astype(np.int64)
             windows = np.split(columns, np.minimum(ends, samples), axis=1)
             return [np.swapaxes(window, 1, 2) @ window for window in windows]
-
-        def of_finite(drop: int) -> list[Real]:
-            with np.errstate(over="ignore", invalid="ignore"):  # of this thread
-                return products_of(drop)
-
-        residuals = self.residuals
-        # Each drop may have a processor of its own.
-        with ThreadPoolExecutor(os.cpu_count()) as pool:
-            products = list(pool.map(of_finite, range(len(at_samples[0]))))
-        by_window = np.swapaxes(np.array(products), 0, 1) * objective.channel_weights[:, :, None, None]
-        return by_window, starts, transitions
