@@ -234,7 +234,4 @@ def select_gravity_leakage(search: ModelSearch) -> ModelSearch:
         search.refit(replace(search.structure, gravity_leakage=leaks), most=_ITERATIONS_OF_SWITCH, enough=NEAR)
         for leaks in (False, True)
     )
-    if other.gain_over(same) > search.required_of_switch:
-        return other.refit(other.structure)
-    # One step more from a fit that has converged leaves it so.
-    return replace(same, fit=replace(same.fit, converged=search.fit.converged))
+    return other.refit(other.structure) if other.gain_over(same) > search.required_of_switch else search
