@@ -219,13 +219,14 @@ class TimeSteppingObjective:
 
         What is known of the motions, as from `SteppedMotion.predict`, saves time.
         """
-        stepper = Stepper.of(self.models_by_kind, self.times, self.kind, values[: self.sensors.shared])
         states, memories = np.split(begin, [self.state_size], axis=1)
         steps = self.every * (self.records.shape[2] - 1)
-        if near is None:
-            trajectory = stepper.integrate(states, memories, steps)
-        else:
-            trajectory = integrate_near(stepper, states, memories, steps, self.every, near)
+        with np.errstate(over="ignore", invalid="ignore"):  # where a motion has no bounds
+            stepper = Stepper.of(self.models_by_kind, self.times, self.kind, values[: self.sensors.shared])
+            if near is None:
+                trajectory = stepper.integrate(states, memories, steps)
+            else:
+                trajectory = integrate_near(stepper, states, memories, steps, self.every, near)
         return TimeSteppingAt(SteppedMotion(self, values, begin, stepper, trajectory), weights)
 
     def sag(self, values: Real) -> Real:
