@@ -142,7 +142,7 @@ def fit_linear(
     ends: list[Maximum[Iterate]] = []
     if direct is not None:
         progress(Step("fitting from a direct start"))
-        u = problem.priors.project(coordinates.from_parameters(direct | nuisance))
+        u = problem.priors.nearest(direct | nuisance)
         ends.append(problem.maximise(u, None, enough, NEARER, most))
         fit = _best(problem, ends, enough)
         if len(ends) == starts or (fit.converged and _leaves_white_noise(fit) and _is_determined(fit)):
@@ -189,13 +189,11 @@ def problem_of(
 def _fit_from(
     problem: EstimationProblem, values: Mapping[str, float], enough: float, most: int = MOST_STEPS
 ) -> FitResult:
-    u = problem.priors.project(problem.priors.coordinates.from_parameters(values))
-    end = problem.maximise(u, None, enough, CLOSE_BY, most)
+    end = problem.maximise(problem.priors.nearest(values), None, enough, CLOSE_BY, most)
     if not np.isfinite(problem.cost(end.point)):
         # A rate that another fit found below zero may make a motion that grows beyond all bounds in this one.
         bounded = {name: value if parameter_of(name).signed else max(value, 0.0) for name, value in values.items()}
-        u = problem.priors.project(problem.priors.coordinates.from_parameters(bounded))
-        end = problem.maximise(u, None, enough, CLOSE_BY, most)
+        end = problem.maximise(problem.priors.nearest(bounded), None, enough, CLOSE_BY, most)
     return _best(problem, [end], enough)
 
 

@@ -138,7 +138,7 @@ def score_linear_term(
     scores = []
     for values in starts:
         problem = problem_of(objective, known, values)
-        u = problem.priors.project(problem.priors.coordinates.from_parameters(values))
+        u = problem.priors.nearest(values)
         # Where the models are equal, so are their residuals, and the noise that these show.
         iterate = Iterate(u, objective.at(problem.priors.coordinates.values(u), fit.weights))
         if not np.isfinite(iterate.at.residual_sums).all():  # a motion without bounds

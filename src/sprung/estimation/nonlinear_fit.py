@@ -119,8 +119,7 @@ def fit_nonlinear(
         start_damping = FAR if usual else CLOSE_BY
         if tolerance >= _ON_THE_WAY or beginning_only:
             # What is found on the way of the memories of friction is used by no one.
-            u = problem.priors.project(problem.priors.coordinates.from_parameters(values))
-            found = problem.maximise(u, None, tolerance, start_damping, most)
+            found = problem.maximise(problem.priors.nearest(values), None, tolerance, start_damping, most)
         else:
             found = _maximise(problem, objective, values, tolerance, most, start_damping)
         states, steps = found.point.at.states, steps + found.steps
@@ -173,8 +172,7 @@ def score_stepped_terms(
     )
     problem = _problem(objective, known, values)
     names, priors = problem.priors.coordinates.names, problem.priors
-    u = priors.project(priors.coordinates.from_parameters(values))
-    information, gradient, null_space = problem.system(problem.start(u))
+    information, gradient, null_space = problem.system(problem.start(priors.nearest(values)))
 
     def project(directions: Sequence[Sequence[str]]) -> Real:
         """Return what constraints leave of directions, in the null space; as columns."""
@@ -234,9 +232,7 @@ def _maximise(
 
     Whether that is likelier shows on the way: only then is it followed to the end. A single step only compares models.
     """
-    priors = problem.priors
-    u = priors.project(priors.coordinates.from_parameters(values))
-    best = problem.maximise(u, None, tolerance, damping, most)
+    best = problem.maximise(problem.priors.nearest(values), None, tolerance, damping, most)
     states = objective.without_impossible_memories(best.point.at.values, best.point.at.states)
     if states is None or most == 1:
         return best

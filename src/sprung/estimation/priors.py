@@ -222,6 +222,10 @@ class PriorsAndConstraints:
         _, gradient = evaluate_quantity(name, self.coordinates.names, self.coordinates.values(u))
         return float(gradient * self.coordinates.derivatives(u) @ step)
 
+    def nearest(self, values: Mapping[str, float]) -> Real:
+        """Return the nearest coordinates to parameter values, SI by name, at which every exact statement holds."""
+        return self.project(self.coordinates.from_parameters(values))
+
     def project(self, u: Real) -> Real:
         """Return the nearest coordinates at which every exact statement holds."""
         for _ in range(20):

@@ -141,11 +141,10 @@ def integrate_near(
         similar = motions[..., state:-1]
         ends = by_drop(np.concatenate([motions[-1:, ..., :state], kept[-1:]], axis=3))[:, :, 0]
         changes = np.zeros_like(starts)
-        with np.errstate(over="ignore", invalid="ignore"):  # where motions diverge
-            for segment in range(number - 1):
-                moved = near.transitions[:, segment] @ changes[:, segment, :, None]
-                changes[:, segment + 1] = ends[:, segment] - starts[:, segment + 1] + moved[..., 0]
-            previous, error = error, float(np.max(np.abs(changes) / scale))
+        for segment in range(number - 1):
+            moved = near.transitions[:, segment] @ changes[:, segment, :, None]
+            changes[:, segment + 1] = ends[:, segment] - starts[:, segment + 1] + moved[..., 0]
+        previous, error = error, float(np.max(np.abs(changes) / scale))
         if error <= _CLOSED:
             whole, memory = (
                 np.swapaxes(np.concatenate(np.swapaxes(by_drop(values[:-1]), 0, 1), axis=1)[:, : steps + 1], 0, 1)
