@@ -58,7 +58,10 @@ VEHICLES: Mapping[str, Vehicle] = {
     "left-right": _car(k_af=4e3, k_xf=5e3, c_xf=800.0, y_s=0.02, d_ktf=5e3, d_csf=100.0, d_ksr=500.0),
     "rigid-axle": _car(n_r=0.8),
     "heavy-axle": _car(n_r=0.8, m_xr=15.0),
-    "attached": _car(m_e=180.0, k_e=4e5, c_e=1500.0, x_e=0.2, m_o=150.0, k_o=9e4, c_o=900.0, x_o=-1.2, y_o=0.1),
+    "attached": _car(
+        m_e=180.0, k_e=4e5, c_e=1500.0, x_e=0.2, m_o=150.0, k_o=9e4, c_o=900.0, x_o=-1.2, y_o=0.1, t_o=0.4
+    ),
+    "uneven-seats": _car(m_o=150.0, k_o=9e4, c_o=900.0, x_o=-1.2, d_mo=12.0, d_ko=-7e3, d_co=80.0),
     "flexible": _car(
         I_w=150.0, k_w=4e5, c_w=200.0, a_w=0.1, u_w=0.05, e_w=-0.02, m_v=400.0, k_v=3e6, c_v=2e3, b_v=0.5, p_v=0.02
     ),

@@ -115,3 +115,11 @@ def test_rates_at_the_spring_and_at_the_damper_have_the_uncertainty_of_rate_and_
     assert (rear.value, rear.std) == pytest.approx((22000 / 0.49, 0.02 * 5**0.5 * 22000 / 0.49))
     assert (damper.value, damper.std) == pytest.approx((6000.0, 120.0))
     assert (front.unit, damper.unit) == ("N/m", "N s/m")
+
+
+def test_the_size_of_a_difference_between_the_sides_is_the_mean_of_both() -> None:
+    fit = fit_of(UNEVEN, np.eye(len(UNEVEN.parameters)))
+    assert fit.size("d_ksf") == UNEVEN.k_sf
+    assert fit.size("d_ktr") == UNEVEN.k_tr
+    assert fit.size("y_s") == max(abs(UNEVEN.y_s), 0.1)
+    assert fit.size("m_s") == UNEVEN.m_s

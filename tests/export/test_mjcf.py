@@ -32,6 +32,7 @@ LACKING = {
     "mount": "k_df",
     "zener": "k_zf",
     "left-right": "k_xf",
+    "uneven-seats": "d_mo",
     "heavy-axle": "m_xr",
     "flexible": "I_w",
     "pitch-plane": "F_f",

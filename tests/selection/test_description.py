@@ -85,6 +85,11 @@ PHRASES: dict[str, tuple[dict[str, float], float, str]] = {
         "a rigid rear axle with its springs at 0.70 ± 0.01 of the half-distance of its wheels",
     ),
     "engine": ({"m_e": 152.0}, 4.0, "an engine of 152 ± 4 kg that moves on its mounts"),
+    "uneven-occupants": (
+        {"d_mo": -12.0, "d_ko": 1e4},
+        1.0,
+        "people on the left and on the right who differ by 24 ± 2 kg, on seats whose rates differ by 20.00 ± 0.01 N/mm",
+    ),
     "progressive": (
         {"p_f": 4.0, "p_r": -3.0},
         0.2,

@@ -41,6 +41,7 @@ NARROW = {name: (-most, most) for name, most in UNEVEN.items()}
 NARROW |= {"y_s": (-0.2, 0.2), "m_xf": (-10.0, 40.0), "m_xr": (-10.0, 40.0)}
 NARROW |= {"m_e": (0.5, 5.0), "x_e": (-2.5, 0.5)}  # no more than the lightest of these bodies is left with
 NARROW |= {"m_o": (0.5, 5.0), "x_o": (-2.5, 0.5), "y_o": (-0.5, 0.5), "a_w": (-0.5, 0.5)}  # likewise
+NARROW |= {"t_o": (0.2, 0.6), "d_mo": (-0.2, 0.2)}
 NARROW |= {name: (0.4, 1.1) for name in PARAMETERS if name[:2] == "n_"}
 
 

@@ -88,6 +88,7 @@ LIMITS: Mapping[str, Limits] = {
     "wheelbase": Limits(0.6, 12.0, "m"),
     **dict.fromkeys(("a", "b"), Limits(0.02, 12.0, "m")),
     **_of_axles(Limits(0.03, 2.0, "m"), "t", "t*1", "t*2"),
+    "t_o": Limits(0.03, 2.0, "m"),
     **_of_axles(Limits(0, 1.0, "m"), "x_b"),
     **_of_axles(Limits(0.005, 5.0, "m/s"), "v_k"),
     **_of_axles(Limits(0.005, 5.0, "m/s"), "v_2", "v_3"),

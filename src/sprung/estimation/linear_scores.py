@@ -66,7 +66,7 @@ def score_linear_terms(
         read = np.tensordot(sensors.of_accelerations(sensors.rows.at(numbers)), added, axes=(1, 1))
         readings.append(at.differentiate_response(forces, np.swapaxes(read, 0, 1)))
     gradient, information = at.with_changes(np.concatenate(readings, axis=2))
-    # Some parameters are about zero in every vehicle, as they are here.
+    # Some parameters are about the same in every vehicle, and here.
     stds = np.array([parameter_of(name).usual_std for names in brought for name in names])
     at_unknown = len(fit.names) + np.flatnonzero(stds)
     information[at_unknown, at_unknown] += stds[stds > 0] ** -2

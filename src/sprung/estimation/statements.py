@@ -21,14 +21,14 @@ def statements_of(
     sensors
         With the uncertainties of their gains, places and delays.
     names
-        Parameters of the model: some are about zero in every vehicle, unless they are stated.
+        Parameters of the model: some are about the same in every vehicle, unless they are stated.
 
     Returns
     -------
     dict
     """
-    spread = {name: parameter_of(name).usual_std for name in names}
-    usual = {name: KnownValue(0.0, std) for name, std in spread.items() if std > 0}
+    about = {name: parameter_of(name) for name in names}
+    usual = {name: KnownValue(one.usual, one.usual_std) for name, one in about.items() if one.usual_std > 0}
     stated = {name: value for name, value in known.items() if name in names or name not in PARAMETERS}
     return {**usual, **stated, **uncertainties_of(sensors)}
 

@@ -18,7 +18,7 @@ from sprung.estimation.score_test import per_total_mass
 from sprung.estimation.subspace import canonical_basis
 from sprung.preprocess import FreeDecay
 from sprung.uncertainty import KnownValue
-from sprung.vehicle import LinearModel, Sensor, is_of_sensor, parameter_of
+from sprung.vehicle import LinearModel, Sensor, is_of_sensor, mean_of_sides, parameter_of
 
 Real = NDArray[np.float64]
 
@@ -141,9 +141,14 @@ class FitStatistics:
         return scaling_direction(self.names, self.values, self.slopes)
 
     def size(self, name: str) -> float:
-        """Size of a parameter: its value, or, where that may be zero, what would matter beside others."""
-        at = self.names.index(name)
+        """Size of a parameter: its value, or, where that may be zero, what would matter beside others.
+
+        What differs between left and right matters beside the mean of both.
+        """
+        at, mean = self.names.index(name), mean_of_sides(name)
         value = abs(float(self.values[at]))
+        if mean in self.names:
+            return max(value, abs(float(self.values[self.names.index(mean)])))
         return value if parameter_of(name).positive else max(value, abs(float(self.slopes[at])))
 
     def spread(self, direction: Real, value: float) -> float | None:

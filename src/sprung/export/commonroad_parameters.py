@@ -23,6 +23,7 @@ _LACKING: Mapping[str, str] = {
     "twist": "a rigid body",
     "bending": "a rigid body",
     "occupants": "the people as a part of a rigid body",
+    "uneven-occupants": "the people as a part of a rigid body",
     "seat-load": "loads as a part of a rigid body",
     "friction": "no dry friction",
     "load-friction": "no dry friction",

@@ -39,6 +39,7 @@ _LACKING = {
     "interconnection": "no interconnection",
     "twist": "a rigid body",
     "bending": "a rigid body",
+    "uneven-occupants": "people who are alike on the left and on the right",
 }
 """What MJCF cannot hold, and what stands for it in an approximation."""
 

@@ -29,6 +29,7 @@ TERM_NAMES: Mapping[str, str] = {
     "twist": "twist of the body",
     "bending": "bending of the body",
     "occupants": "people on soft seats",
+    "uneven-occupants": "people on soft seats who differ between left and right",
     "seat-load": "loads on soft seats",
     "friction": "dry friction",
     "load-friction": "dry friction that grows with the load",

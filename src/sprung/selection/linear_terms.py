@@ -336,6 +336,21 @@ LINEAR_TERMS = (
         band=(2.0, 7.5),
     ),
     ModelTerm(
+        "uneven-occupants",
+        lambda p: max(abs(p[f"d_{rate}o"] / p[f"{rate}_o"]) for rate in "mk"),
+        typical=0.1,
+        spread=2.0,
+        negligible=0.01,
+        description=TermDescription(
+            "people on the left and on the right who differ by {0}, on seats whose rates differ by {1}",
+            (
+                (lambda p, _: 2 * abs(p["d_mo"]), "kg"),
+                (lambda p, _: 2 * abs(p["d_ko"]) / 1e3, "N/mm"),
+            ),
+            neutral=None,
+        ),
+    ),
+    ModelTerm(
         SEAT_LOAD,
         lambda p: 1 / natural_frequency(p["w_l"], 1.0),
         typical=1 / SEAT_FREQUENCY,

@@ -6,6 +6,7 @@ import numpy as np
 
 from sprung.selection.description import Values
 from sprung.selection.structure import ModelStructure
+from sprung.vehicle import PARAMETERS
 
 USUAL_OCCUPANTS, SEAT_FREQUENCY, _SEAT_DAMPING = 0.06, 4.5, 0.3
 """People on seats as a part of the sprung mass, the natural frequency of a seat, Hz, and its damping ratio (Griffin, Handbook
@@ -49,4 +50,4 @@ def usual_occupants(own: Values, structure: ModelStructure, share: float = USUAL
     mass, omega = share * own["m_s"], 2 * np.pi * SEAT_FREQUENCY
     place = -structure.seat_place * (own.get("a", 0.0) + own.get("b", 0.0))
     rates = {"m_o": mass, "k_o": mass * omega**2, "c_o": 2 * _SEAT_DAMPING * mass * omega}
-    return {**rates, "x_o": place, "y_o": 0.0}
+    return {**rates, "x_o": place, "y_o": 0.0, "t_o": PARAMETERS["t_o"].usual}

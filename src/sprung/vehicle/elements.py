@@ -30,7 +30,7 @@ from sprung.vehicle.layout import (
 LINEAR_EXTRAS = (
     "anti-roll", "tyre-damping", "gravity", "asymmetry", "rigid-axle", "engine", "damper-mount",
     "mount-damping", "zener", "interconnection",
-    "twist", "bending", "occupants", "seat-load",
+    "twist", "bending", "occupants", "uneven-occupants", "seat-load",
 )  # fmt: skip
 """Extras, by the name used in a campaign's ``[model]``, of the linear model."""
 
@@ -49,6 +49,7 @@ REFINED: Mapping[str, str] = MappingProxyType(
         "load-friction": "friction",
         "uneven-friction": "friction",
         "mount-damping": "damper-mount",
+        "uneven-occupants": "occupants",
     }
 )
 """Extras that are nothing without another one, and that other one."""
@@ -230,6 +231,8 @@ def _elements_of_the_body(extras: Collection[str], wheelbase: float, layout: Lay
         for side in sides:
             seats, people = kinematics.seats(side, wheelbase), kinematics.occupants(side)
             yield from _attached_mass("o", seats, people, 1 / len(sides))
+            if "uneven-occupants" in extras:
+                yield from _attached_mass("o", seats, people, side, "d_{}")
     # Modal masses and rates are those for the angle between the axles and for the rise of the middle.
     for term, mass, index, row, size in (
         ("twist", "I_w", "w", kinematics.torsion(), wheelbase**2),
@@ -241,15 +244,16 @@ def _elements_of_the_body(extras: Collection[str], wheelbase: float, layout: Lay
             yield Element("damper", f"c_{index}", row, size)
 
 
-def _attached_mass(index: str, below: Row, own: Row, part: float = 1.0) -> Iterator[Element]:
-    """Yield the elements of a mass on a spring and a damper of its own, or of a part of them.
+def _attached_mass(index: str, below: Row, own: Row, part: float = 1.0, name: str = "{}_") -> Iterator[Element]:
+    """Yield the elements of a mass on a spring and a damper of its own, or of a part of them, by the name of their parameters.
 
     The sprung mass and its inertias include it: it is taken off the body, where it is attached, and moves by itself.
     """
-    yield Element("mass", f"m_{index}", below, -part)
-    yield Element("mass", f"m_{index}", own, part)
-    yield Element("spring", f"k_{index}", below - own, part)
-    yield Element("damper", f"c_{index}", below - own, part)
+    mass, spring, damper = (f"{name.format(one)}{index}" for one in "mkc")
+    yield Element("mass", mass, below, -part)
+    yield Element("mass", mass, own, part)
+    yield Element("spring", spring, below - own, part)
+    yield Element("damper", damper, below - own, part)
 
 
 def _axle_elements(tracks: Tracks, extras: Collection[str], wheelbase: float, layout: Layout) -> Iterator[Element]:

@@ -41,9 +41,8 @@ _WITHOUT_MASS: Mapping[str, str] = {"k_df": "x_d", "k_d": "x_d", "k_zf": "x_z", 
 _OF_AXLES: Mapping[str, str] = {"k_xf": "x_if", "k_xr": "x_ir", "k_x": "x_i"}
 """By parameter: the coordinates without mass that an axle has, difference in travel of a damper between its wheels."""
 
-_BESIDE, _RISE_AT_SEATS = 0.37, 0.9
-"""Half-distance of two people beside each other, m, and what the body under their seats rises as it bends, over the rise of its
-middle: 0.75 to 1 in the middle half of the wheelbase."""
+_RISE_AT_SEATS = 0.9
+"""What the body under seats rises as it bends, over the rise of its middle: 0.75 to 1 in the middle half of the wheelbase."""
 
 _RISES_IN_HEAVE = frozenset({"z_s", *(station.coordinate for station in STATIONS.values()), "z_e", "z_o", *SEAT_LOADS})
 """Coordinates that are vertical displacements over the ground."""
@@ -328,7 +327,7 @@ def occupants(side: float) -> Row:
 def seats(side: float, wheelbase: float = 0.0) -> Row:
     """Vertical displacement of the body under the seats of the left (1) or of the right (-1).
 
-    They are side by side; their middle is x_o forward of the front axle and y_o left of the centreline.
+    They are side by side, t_o from their middle, which is x_o forward of the front axle and y_o left of the centreline.
 
     Parameters
     ----------
@@ -337,8 +336,9 @@ def seats(side: float, wheelbase: float = 0.0) -> Row:
     wheelbase
         Of a body that bends, m: seats are between the axles, where it rises by most of what its middle does.
     """
-    constant = {"z_s": 1.0, "phi": side * _BESIDE, "q_v": _RISE_AT_SEATS * sag(wheelbase)}
-    return Row(constant, {"a": {"theta": -1.0}, "x_o": {"theta": -1.0}, "y_o": {"phi": 1.0}})
+    constant = {"z_s": 1.0, "q_v": _RISE_AT_SEATS * sag(wheelbase)}
+    across = {"y_o": {"phi": 1.0}, "t_o": {"phi": side}} if side else {}
+    return Row(constant, {"a": {"theta": -1.0}, "x_o": {"theta": -1.0}, **across})
 
 
 def on_seat(number: int) -> Row:

@@ -25,8 +25,10 @@ class Parameter(NamedTuple):
     """Whether it may be negative."""
     vanishes_at_infinity: bool = False
     """Whether the effect of its term vanishes where it is infinite: the rate of a spring in series, or a modal mass."""
+    usual: float = 0.0
+    """Mean in vehicles of all kinds, SI, if `usual_std` is not 0."""
     usual_std: float = 0.0
-    """Standard deviation around zero in vehicles of all kinds, SI, which counts where nothing is stated; 0 for none."""
+    """Standard deviation in vehicles of all kinds, SI, which counts where nothing is stated; 0 for none."""
 
 
 _TABLE: Mapping[str, Parameter] = {
@@ -116,6 +118,10 @@ _TABLE: Mapping[str, Parameter] = {
     "c_o": Parameter("N s/m", "damping of the seats of these people, all together", True, False),
     "x_o": Parameter("m", "people on soft seats, forward of the front axle", False, False, True),
     "y_o": Parameter("m", "people on soft seats, left of the centreline", False, False, True),
+    "t_o": Parameter("m", "half-distance of people on soft seats beside each other", False, usual=0.37, usual_std=0.04),
+    "d_mo": Parameter("kg", "people on the left above the mean of both sides", True, False, True),
+    "d_ko": Parameter("N/m", "rate of the seats on the left above the mean of both sides", True, False, True),
+    "d_co": Parameter("N s/m", "damping of the seats on the left above the mean of both sides", True, False, True),
     "w_l": Parameter(
         "1/s^2", "rate of the seats under a load, over the mass on them", False, vanishes_at_infinity=True
     ),
@@ -180,7 +186,8 @@ _TERMS: Mapping[str, tuple[str, ...]] = {
     "interconnection": ("k_x*", "c_x*"),
     "twist": ("I_w", "k_w", "c_w", "a_w", "u_w", "e_w"),
     "bending": ("m_v", "k_v", "c_v", "b_v", "p_v"),
-    "occupants": ("m_o", "k_o", "c_o", "x_o", "y_o"),
+    "occupants": ("m_o", "k_o", "c_o", "x_o", "y_o", "t_o"),
+    "uneven-occupants": ("d_mo", "d_ko", "d_co"),
     "seat-load": ("w_l", "c_l"),
     "friction": ("F*", "s*"),
     "load-friction": ("u*",),
@@ -208,8 +215,10 @@ _NEEDS: Mapping[str, Callable[[Layout], bool]] = {
             "interconnection",
             "asymmetry",
             "uneven-friction",
+            "uneven-occupants",
             "rigid-axle",
             "y_o",
+            "t_o",
             "I_xx",
             "t*",
             "t*1",
@@ -231,6 +240,7 @@ _WITHOUT_EFFECT: Mapping[str, float] = {
     "k_v": 1e7,
     "c_v": 1e4,
     "k_o": 1e5,
+    "t_o": 0.37,
 }
 """Parameters of extras without effect where the others of the extra are neutral, and their values in a vehicle without it."""
 
@@ -360,6 +370,26 @@ def separate_track_names(name: str) -> tuple[str, ...]:
         for place, shared in names_of("shared").items()
     ]
     return tuple(sorted(separate for shared, separate in places if shared == name)) or (name,)
+
+
+def mean_of_sides(name: str) -> str | None:
+    """Return the name of the mean of left and right above which a parameter is what the left has; None for any other.
+
+    Parameters
+    ----------
+    name
+        Of any parameter.
+
+    Returns
+    -------
+    str or None
+
+    Examples
+    --------
+    >>> mean_of_sides("d_ksf"), mean_of_sides("d_mo"), mean_of_sides("k_sf")
+    ('k_sf', 'm_o', None)
+    """
+    return f"{name[2]}_{name[3:]}" if name.startswith("d_") else None
 
 
 def with_separate_tracks(parameters: Mapping[str, float]) -> dict[str, float]:

@@ -115,9 +115,11 @@ class Vehicle:
     m_v, k_v, c_v, b_v, p_v
         Bending of the body: modal mass, kg, stiffness, N/m, and damping, N s/m, for the rise of its middle above its axles;
         rise of the centre of gravity, 1, and mean pitch, 1/m, over that. An infinite mass is that of a body that does not bend.
-    m_o, k_o, c_o, x_o, y_o
+    m_o, k_o, c_o, x_o, y_o, t_o
         People on soft seats, kg, a part of the sprung mass and of its inertias; rate, N/m, and damping, N s/m, of all seats
-        together; and their place, m forward of the front axle and left of the centreline.
+        together; their place, m forward of the front axle and left of the centreline; and their half-distance, m.
+    d_mo, d_ko, d_co
+        Excess of the people and seats on the left over the mean of both sides.
     w_l, c_l
         Rate, 1/s², and damping, 1/s, of the seats under items of loads, over the mass on them: the squared natural frequency,
         and twice that frequency times the damping ratio. An infinite rate is that of a floor.
