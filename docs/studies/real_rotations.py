@@ -52,6 +52,7 @@ class Space:
 
     def __init__(self, rows: Sequence[Row], cg_height: float, wheel_height: float) -> None:
         cars = [row.car for row in rows]
+        self.cg_height = cg_height
         self.flat = Rows(rows)
         self.body = np.array([c.m_s for c in cars])
         self.inertia = np.array([np.diag([c.I_xx, c.I_yy, YAW * c.I_yy]) for c in cars])
@@ -180,7 +181,8 @@ class Space:
         """
         up, spin = at.turned[:, 2, :], at.spin[:, None]
         corners = [one for one in sensors if one.on == "body"]
-        r = np.array([[one.x, one.y, 0.0] for one in corners])[None] + front[:, None, None] * [1.0, 0.0, 0.0]
+        r = np.array([[one.x, one.y, one.z - self.cg_height] for one in corners])
+        r = r[None] + front[:, None, None] * [1.0, 0.0, 0.0]
         r = np.concatenate([r, self.points(at)[:, :4]], axis=1)
         felt = A[:, None, :3] + np.cross(A[:, None, 3:6], r) + np.cross(spin, np.cross(spin, r))
         felt[:, len(corners) :, 2] += A[:, 6:]
