@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import real_campaigns
 from real_campaigns import record
 from real_kinds import KINDS, NO_VEHICLE, draw_test
 from real_motion import BallastItem, Motion, Row, Rows, follow
@@ -135,6 +136,19 @@ def test_what_fails_is_an_outcome() -> None:
     assert "no such term" in failed.reason
     late = examine(campaign, truth, 0.01)
     assert (late.verdict, late.reason) == ("failed", "more than 0.01 s of processor time")
+
+
+@pytest.mark.slow
+def test_a_tall_car_is_identified_whose_body_turns_by_finite_angles(monkeypatch: pytest.MonkeyPatch) -> None:
+    """To second order in the angles the roll inertia was 1 % off, the rear anti-roll bar 0.5 %."""
+    monkeypatch.setattr(real_campaigns, "NOISE", 1e-3)
+    test = draw_test("tall", 1)
+    ((campaign, truth),) = record([test])
+    assert (test.cg_height or 0.0) > 0.75
+    known = replace(campaign, cg_height=test.cg_height, wheel_height=test.wheel_height)
+    result = sprung.identify(known, extras=("anti-roll",))
+    for name, value in truth.parameters.items():
+        assert result.parameters[name].value == pytest.approx(value, rel=2e-3), name
 
 
 @pytest.mark.long

@@ -59,7 +59,7 @@ def select_linear_terms(run: Analysis, progress: Progress) -> Analysis:
 
 
 def select_finite_rotation(run: Analysis, progress: Progress) -> Analysis:
-    """Take the effects of the second order in the angles into account, if the recordings show them."""
+    """Take into account that the body turns by finite angles, if the recordings show it."""
     before = replace(run.model, progress=progress)
     _, plain = structures(run)
     search = select_rotation(before, plain)

@@ -1,7 +1,7 @@
-"""Finite rotation: whether the recordings show effects of the second order in the angles, and how a load changes the geometry.
+"""Finite rotation: whether the recordings show that the body turns by finite angles, and how a load changes the geometry.
 
 A simulated vehicle of the linear model has neither, a real one both. They have no parameter of their own: the recordings decide
-by their likelihood, as about any term. What sensors read to second order follows from the fitted motion and is subtracted from
+by their likelihood, as about any term. What sensors read of it follows from the fitted motion and is subtracted from
 the recordings.
 """
 
@@ -20,7 +20,7 @@ from sprung.selection.starts import fit_structure, start_values, thinned
 from sprung.selection.stepwise import select_linear_terms
 from sprung.selection.structure import ModelStructure
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import EMPTY, FULL, Heights, body_sinking, coordinates, second_order_readings
+from sprung.vehicle import EMPTY, FULL, Heights, body_sinking, coordinates, finite_rotation_readings
 
 Real = NDArray[np.float64]
 
@@ -55,7 +55,7 @@ _ASSUMPTIONS: tuple[_Assumption, ...] = ((True, False), (True, True), (False, Tr
 
 
 def select_finite_rotation(search: ModelSearch, plain: ModelStructure) -> ModelSearch:
-    """Return the search with second-order effects of rotation, if the recordings support them.
+    """Return the search with the effects of finite rotation, if the recordings support them.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def select_finite_rotation(search: ModelSearch, plain: ModelStructure) -> ModelS
     """
     structure = search.structure
     is_held = structure.campaign.heights.roll_axis_height is not None
-    # The second-order terms are those of a body that pitches and rolls.
+    # It is that of a body that pitches and rolls.
     if structure.layout != FULL or structure.is_time_stepped or is_held or any(decay.clocks for decay in search.decays):
         return search
     # Angles are small: what is large is something else, a fault perhaps, which would be taken for it.
@@ -98,7 +98,7 @@ def select_finite_rotation(search: ModelSearch, plain: ModelStructure) -> ModelS
 
 
 def _drops_that_turn_most(fit: FitResult) -> list[int]:
-    """Return the positions of the drops in which the body turns furthest: effects of the second order go with its square."""
+    """Return the positions of the drops in which the body turns furthest: the effects go with its square."""
     every, states = coordinates(fit.names), fit.states
     own = np.array([every.index("theta"), every.index("phi")])
     angles, rates = states[:, own], states[:, len(every) + own]
@@ -120,7 +120,7 @@ def _loses_much(search: ModelSearch, assumption: _Assumption, drops: Sequence[in
         fit.motion(drop, 0, decay.samples)[:, :: round(decay.rate / one.rate)]
         for drop, decay, one in zip(drops, decays, thin, strict=True)
     ]
-    corrected = _without_second_order(structure, fit, thin, motions)
+    corrected = _without_rotation(structure, fit, thin, motions)
     (before, _), (after, gain) = expected_ends(fit, (thin, corrected))
     return gain < _NEAR_BY and after - before < -search.required_of_switch
 
@@ -128,7 +128,7 @@ def _loses_much(search: ModelSearch, assumption: _Assumption, drops: Sequence[in
 def _corrected(
     search: ModelSearch, recorded: Sequence[FreeDecay], assumption: _Assumption, passes: int = _PASSES, most: int = 100
 ) -> ModelSearch:
-    """Subtract what the fitted motion adds to the recordings to second order, and fit again.
+    """Subtract what finite rotation adds to the recordings of the fitted motion, and fit again.
 
     Parameters
     ----------
@@ -146,21 +146,21 @@ def _corrected(
     for _ in range(passes):
         fit, structure = search.fit, _with_geometry(search.structure, search.fit.parameters, assumption)
         motions = [fit.motion(drop, 0, decay.samples) for drop, decay in enumerate(recorded)]
-        decays = _without_second_order(structure, fit, recorded, motions)
+        decays = _without_rotation(structure, fit, recorded, motions)
         fitted = fit_structure(structure, decays, fit, NEAR, search.progress, most=most)
         search = replace(search, structure=structure, fit=fitted, decays=tuple(decays))
     return search
 
 
-def _without_second_order(
+def _without_rotation(
     structure: ModelStructure, fit: FitResult, recorded: Sequence[FreeDecay], motions: Sequence[Real]
 ) -> list[FreeDecay]:
-    """Subtract from decays what their motions, {X, Ẋ} of shape (state, time) each, add to them to second order."""
+    """Subtract from decays what finite rotation adds to their motions, {X, Ẋ} of shape (state, time) each."""
     loads = {load.name: load for load in structure.campaign.loads}
     decays = list(recorded)
     for load, rate in dict.fromkeys((decay.load, decay.rate) for decay in recorded):
         drops = [drop for drop, decay in enumerate(recorded) if (decay.load, decay.rate) == (load, rate)]
-        readings = second_order_readings(
+        readings = finite_rotation_readings(
             structure.linear_models[load],
             structure.tracks,
             structure.heights_of(load),

@@ -21,7 +21,7 @@ from sprung.vehicle.elements import (
     stiffened_air_springs,
     travels,
 )
-from sprung.vehicle.finite_rotation import body_sinking, second_order_readings
+from sprung.vehicle.finite_rotation import body_sinking, finite_rotation_readings
 from sprung.vehicle.force_laws import ElementInput, ForceLaw
 from sprung.vehicle.heights import LEVEL, CarriedAt, Heights
 from sprung.vehicle.kinematics import Row, body_point, coordinates, heave, state_variables
@@ -162,6 +162,7 @@ __all__ = [
     "differentiate_motions",
     "differentiate_tyre_rates_at_rest",
     "evaluate_quantity",
+    "finite_rotation_readings",
     "free_decay",
     "ground_contact_elements",
     "half_distances",
@@ -183,7 +184,6 @@ __all__ = [
     "parameters_of_term",
     "parse_record",
     "problems_of_record",
-    "second_order_readings",
     "segments_of",
     "sensor_rows",
     "sensor_unknown",

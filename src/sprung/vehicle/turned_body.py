@@ -1,0 +1,253 @@
+"""A body that turns by finite angles: where its points are, and the forces that the linear equations of motion leave out.
+
+Pitch comes first, then roll: a point of the body at (x, y, h) from the centre of gravity is at the height
+z - x sin θ + y cos θ sin φ + h cos θ cos φ. Wheels slide along the body's own vertical axis, tyres press vertically, and
+nothing holds the vehicle sideways: the common centre of all masses moves vertically. Nothing is expanded in the angles.
+Signals hold values and their first and second derivatives by time, shape (3, ..., time).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sprung.units import STANDARD_GRAVITY
+
+Array = NDArray[np.float64]
+
+BODY, MOVING = 3, 7
+"""Coordinates of the body, bounce, pitch and roll, and with those of the four wheels."""
+
+_VALUE, _RATE, _SECOND = 0, 1, 2
+
+
+class Points(NamedTuple):
+    """Points of the body, or the wheels as such.
+
+    Attributes
+    ----------
+    x, y, h
+        From the centre of gravity forward, to the left and along the body's axis, m, shape (point,).
+    mass
+        kg, shape (point,).
+    """
+
+    x: Array
+    y: Array
+    h: Array
+    mass: Array
+
+
+class Struts(NamedTuple):
+    """Springs or dampers between the body and its wheels.
+
+    Attributes
+    ----------
+    y
+        Left of the centreline, m, shape (wheel,).
+    rate
+        N/m or N s/m of each wheel's compression, shape (wheel, wheel): an anti-roll bar acts at both wheels of an axle.
+    static
+        Force of compression at rest, N, shape (wheel,).
+    """
+
+    y: Array
+    rate: Array
+    static: Array
+
+
+@dataclass(frozen=True, eq=False)
+class TurnedBody:
+    """A vehicle with a load, whose body turns.
+
+    Its motions are those of z_s, θ, φ and the four wheels from rest, SI, shape (3, 7, time).
+
+    Attributes
+    ----------
+    mass
+        Of body, wheels and items, kg.
+    tilt
+        Pitch and roll at rest, rad.
+    wheels
+        Unsprung masses at the places of the springs, as the body stands.
+    springs, dampers
+        Those of the suspension.
+    items
+        Of the load.
+    """
+
+    mass: float
+    tilt: tuple[float, float]
+    wheels: Points
+    springs: Struts
+    dampers: Struts
+    items: Points
+
+    def forces(self, motion: Array) -> Array:
+        """Return the generalised forces against a motion, less those at rest, N and N m, shape (7, time).
+
+        Those that are linear at any angle are left out: inertia and weight of the body itself, and the forces of the tyres.
+        """
+        return self._forces(motion) - self._forces(_AT_REST)
+
+    def readings(self, motion: Array, points: Points) -> Array:
+        """Return the specific forces along the body's axis, less those at rest, at points of the body and at its wheels.
+
+        Parameters
+        ----------
+        motion
+            Of the vehicle.
+        points
+            Of the body.
+
+        Returns
+        -------
+        ndarray
+            m/s², shape (point + wheel, time).
+        """
+        return self._readings(motion, points) - self._readings(_AT_REST, points)
+
+    def _forces(self, motion: Array) -> Array:
+        turned = _Turned.of(motion, self.tilt)
+        forces = np.zeros(motion.shape[1:])
+        wheels = self._slid(turned, motion, self.springs.y)
+        damped = self._slid(turned, motion, self.dampers.y)
+        centre = self._centre(turned, wheels)
+        # Wheels move sideways with the body, and slide along its axis.
+        push = wheels.mass[:, None] * (turned.sideways(wheels)[:, _SECOND] - centre)
+        spring = self.springs.static[:, None] + self.springs.rate @ (wheels.h[_VALUE] - self.wheels.h[:, None])
+        damper = self.dampers.static[:, None] + self.dampers.rate @ damped.h[_RATE]
+        forces[1:BODY] += turned.moments(wheels, push)
+        forces += turned.by_slide(wheels, spring + turned.on_axis(push)) + turned.by_slide(damped, damper)
+        # Items move in all directions, and have weight.
+        mass = self.items.mass[:, None]
+        forces[1:BODY] += turned.moments(self.items, mass * (turned.sideways(self.items)[:, _SECOND] - centre))
+        lifted = mass * (turned.height(motion, self.items)[_SECOND] + STANDARD_GRAVITY)
+        forces[:BODY] += turned.by_height(self.items, lifted)
+        return forces
+
+    def _readings(self, motion: Array, points: Points) -> Array:
+        turned = _Turned.of(motion, self.tilt)
+        wheels = self._slid(turned, motion, self.springs.y)
+        aside = np.concatenate([turned.sideways(one)[:, _SECOND] for one in (points, wheels)], axis=1)
+        lifted = np.concatenate([turned.height(motion, points)[_SECOND], motion[_SECOND, BODY:]]) + STANDARD_GRAVITY
+        readings: Array = turned.on_axis(aside - self._centre(turned, wheels)) + turned.upright[_VALUE] * lifted
+        return readings
+
+    def _slid(self, turned: _Turned, motion: Array, y: Array) -> Points:
+        """Return the wheels where they have slid to along the body's axis, as seen at struts."""
+        places = self.wheels._replace(y=y)
+        rest = _Turned.of(_AT_REST, self.tilt).height(_AT_REST, places)
+        above = motion[:, BODY:] + rest - turned.height(motion, places._replace(h=np.zeros(len(y))))
+        return places._replace(h=_product(above, turned.stretched))
+
+    def _centre(self, turned: _Turned, wheels: Points) -> Array:
+        """Return the horizontal acceleration of the common centre from the body's centre of gravity, shape (2, 1, time)."""
+        moved = [np.einsum("p,apt->at", one.mass, turned.sideways(one)[:, _SECOND]) for one in (wheels, self.items)]
+        centre: Array = (moved[0] + moved[1])[:, None] / self.mass
+        return centre
+
+
+_AT_REST = np.zeros((3, MOVING, 1))
+
+
+@dataclass(frozen=True, eq=False)
+class _Turned:
+    """Sines and cosines of pitch and roll, signals of shape (3, 1, time); `h` of points may be a signal, (3, point, time)."""
+
+    sin_pitch: Array
+    cos_pitch: Array
+    sin_roll: Array
+    cos_roll: Array
+
+    @classmethod
+    def of(cls, motion: Array, tilt: tuple[float, float]) -> _Turned:
+        return cls(*_sine_and_cosine(motion[:, 1:2], tilt[0]), *_sine_and_cosine(motion[:, 2:3], tilt[1]))
+
+    @cached_property
+    def upright(self) -> Array:
+        """Vertical part of the body's axis."""
+        return _product(self.cos_pitch, self.cos_roll)
+
+    @cached_property
+    def stretched(self) -> Array:
+        """One over it."""
+        value, rate, second = self.upright
+        return np.stack([1 / value, -rate / value**2, (2 * rate**2 / value - second) / value**2])
+
+    @cached_property
+    def forward(self) -> Array:
+        """Part of the body's axis that points forward."""
+        return _product(self.sin_pitch, self.cos_roll)
+
+    def height(self, motion: Array, points: Points) -> Array:
+        """Height above that of the centre of gravity at rest, (3, point, time)."""
+        rolled = points.y[:, None] * _product(self.cos_pitch, self.sin_roll)
+        above: Array = motion[:, :1] - points.x[:, None] * self.sin_pitch + rolled + _scaled(points.h, self.upright)
+        return above
+
+    def sideways(self, points: Points) -> Array:
+        """Places forward and to the left of the centre of gravity, (2, 3, point, time)."""
+        x, y = points.x[:, None], points.y[:, None]
+        forward = x * self.cos_pitch + y * _product(self.sin_pitch, self.sin_roll) + _scaled(points.h, self.forward)
+        return np.stack([forward, y * self.cos_roll - _scaled(points.h, self.sin_roll)])
+
+    def on_axis(self, force: Array) -> Array:
+        """Part along the body's axis of horizontal forces (2, point, time)."""
+        along: Array = self.forward[_VALUE] * force[0] - self.sin_roll[_VALUE] * force[1]
+        return along
+
+    def moments(self, points: Points, force: Array) -> Array:
+        """Moments by pitch and by roll of horizontal forces (2, point, time)."""
+        aside, up = self._rolled(points)
+        x, sin, cos = points.x[:, None], self.sin_pitch[_VALUE], self.cos_pitch[_VALUE]
+        pitch = (up * cos - x * sin) * force[0]
+        roll = sin * aside * force[0] - up * force[1]
+        return np.stack([pitch.sum(axis=0), roll.sum(axis=0)])
+
+    def by_height(self, points: Points, force: Array) -> Array:
+        """Generalised forces on bounce, pitch and roll of vertical forces (point, time)."""
+        aside, up = self._rolled(points)
+        pitch = -(points.x[:, None] * self.cos_pitch[_VALUE] + up * self.sin_pitch[_VALUE]) * force
+        return np.stack([one.sum(axis=0) for one in (force, pitch, self.cos_pitch[_VALUE] * aside * force)])
+
+    def by_slide(self, wheels: Points, force: Array) -> Array:
+        """Generalised forces of forces (wheel, time) along the body's axis on wheels that slide along it."""
+        level = wheels._replace(h=np.zeros(len(wheels.x)))
+        vertical = force * self.stretched[_VALUE]
+        body = -self.by_height(level, vertical)
+        h = wheels.h[_VALUE]
+        tangents = np.concatenate(
+            [self.sin_pitch[_VALUE] / self.cos_pitch[_VALUE], self.sin_roll[_VALUE] / self.cos_roll[_VALUE]]
+        )
+        body[1:] += tangents * (h * force).sum(axis=0)
+        return np.concatenate([body, vertical])
+
+    def _rolled(self, points: Points) -> tuple[Array, Array]:
+        """Places to the left and up in axes that pitch with the body and do not roll, (point, time) each."""
+        y, h = points.y[:, None], points.h[_VALUE] if points.h.ndim == 3 else points.h[:, None]
+        sin, cos = self.sin_roll[_VALUE], self.cos_roll[_VALUE]
+        return y * cos - h * sin, y * sin + h * cos
+
+
+def _product(one: Array, other: Array) -> Array:
+    """Return the product of two signals, by Leibniz's rule."""
+    second = one[_SECOND] * other[_VALUE] + 2 * one[_RATE] * other[_RATE] + one[_VALUE] * other[_SECOND]
+    return np.stack([one[_VALUE] * other[_VALUE], one[_RATE] * other[_VALUE] + one[_VALUE] * other[_RATE], second])
+
+
+def _scaled(h: Array, signal: Array) -> Array:
+    """Return a signal times lengths of points, which are constant or signals themselves."""
+    return _product(h, signal) if h.ndim == 3 else h[:, None] * signal
+
+
+def _sine_and_cosine(angle: Array, from_level: float) -> tuple[Array, Array]:
+    """Return both of an angle at rest and a signal of its change."""
+    sin, cos = np.sin(from_level + angle[_VALUE]), np.cos(from_level + angle[_VALUE])
+    rate, second = angle[_RATE], angle[_SECOND]
+    sine = np.stack([sin, cos * rate, cos * second - sin * rate**2])
+    return sine, np.stack([cos, -sin * rate, -sin * second - cos * rate**2])
