@@ -167,11 +167,13 @@ log-uniform in the usual ranges (`real_kinds.py`).
 Each campaign: ten drops from 5 cm (buses 7 cm), five with ballast; {RATE:g} samples per second; noise
 {NOISE:g} m/s²; axle masses known within {WEIGHING:g} kg. The campaign file says nothing about the kind.
 
-*Seats* are two people of different weight side by side; the model has one mean seat, which does not move against the body in
-roll. *Usual* is everything at once that every car has: mount, curve, rubber, tyre, dry friction, sensors as they are. *Median
-error* is that of the worst parameter of each campaign, among the fifteen of the plain vehicle; *worst* the largest of all.
-*Covered*: 95 % intervals of all parameters that contain the true value. Errors do not include rejected campaigns, of which no
-parameters are stated. The damper curve is compared from {SLOWEST:g} m/s to the largest velocity in the decays.
+*Seats* are two people side by side, each with a weight and a seat of his own. *Tall* cars have anti-roll bars and a centre of
+gravity 0.75 to 1 m high, of which the campaign file says nothing. *Usual* is everything at once that every car has: mount,
+curve, rubber, tyre, dry friction, sensors as they are; those are tilted and misplaced, have errors of gain, and loggers with
+a low-pass. *Median error* is that of the worst parameter of each campaign, among the fifteen of the plain vehicle; *worst*
+the largest of all. *Covered*: 95 % intervals of all parameters that contain the true value. Errors do not include rejected
+campaigns, of which no parameters are stated. The damper curve is compared from {SLOWEST:g} m/s to the largest velocity in the
+decays.
 
 ## Results
 

@@ -83,7 +83,9 @@ def select_finite_rotation(search: ModelSearch, plain: ModelStructure) -> ModelS
         return search
     first, assumption = _corrected(search, recorded, plainest, passes=1, most=_FIRST_ITERATIONS), plainest
     if first.fit.loglikelihood > search.fit.loglikelihood:
-        tried = [first, *(_corrected(search, recorded, one, passes=1, most=_FIRST_ITERATIONS) for one in others)]
+        # Assumptions are compared once each has the geometry that it leads to itself.
+        tried = [_corrected(first, recorded, plainest, passes=1, most=_FIRST_ITERATIONS)]
+        tried += [_corrected(search, recorded, one, most=_FIRST_ITERATIONS) for one in others]
         likeliest = max(range(len(tried)), key=lambda i: tried[i].fit.loglikelihood)
         first, assumption = tried[likeliest], (plainest, *others)[likeliest]
     if first.gain_over(search) <= search.required_of_switch:

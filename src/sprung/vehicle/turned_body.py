@@ -92,7 +92,7 @@ class TurnedBody:
 
         Those that are linear at any angle are left out: inertia and weight of the body itself, and the forces of the tyres.
         """
-        return self._forces(motion) - self._forces(_AT_REST)
+        return self._forces(motion) - self._forces_at_rest
 
     def readings(self, motion: Array, points: Points) -> Array:
         """Return the specific forces along the body's axis, less those at rest, at points of the body and at its wheels.
@@ -114,8 +114,8 @@ class TurnedBody:
     def _forces(self, motion: Array) -> Array:
         turned = _Turned.of(motion, self.tilt)
         forces = np.zeros(motion.shape[1:])
-        wheels = self._slid(turned, motion, self.springs.y)
-        damped = self._slid(turned, motion, self.dampers.y)
+        wheels = self._slid(turned, motion, self.springs)
+        damped = wheels if np.array_equal(self.dampers.y, wheels.y) else self._slid(turned, motion, self.dampers)
         centre = self._centre(turned, wheels)
         # Wheels move sideways with the body, and slide along its axis.
         push = wheels.mass[:, None] * (turned.sideways(wheels)[:, _SECOND] - centre)
@@ -132,18 +132,26 @@ class TurnedBody:
 
     def _readings(self, motion: Array, points: Points) -> Array:
         turned = _Turned.of(motion, self.tilt)
-        wheels = self._slid(turned, motion, self.springs.y)
+        wheels = self._slid(turned, motion, self.springs)
         aside = np.concatenate([turned.sideways(one)[:, _SECOND] for one in (points, wheels)], axis=1)
         lifted = np.concatenate([turned.height(motion, points)[_SECOND], motion[_SECOND, BODY:]]) + STANDARD_GRAVITY
         readings: Array = turned.on_axis(aside - self._centre(turned, wheels)) + turned.upright[_VALUE] * lifted
         return readings
 
-    def _slid(self, turned: _Turned, motion: Array, y: Array) -> Points:
+    @cached_property
+    def _forces_at_rest(self) -> Array:
+        return self._forces(_AT_REST)
+
+    @cached_property
+    def _turned_at_rest(self) -> _Turned:
+        return _Turned.of(_AT_REST, self.tilt)
+
+    def _slid(self, turned: _Turned, motion: Array, struts: Struts) -> Points:
         """Return the wheels where they have slid to along the body's axis, as seen at struts."""
-        places = self.wheels._replace(y=y)
-        rest = _Turned.of(_AT_REST, self.tilt).height(_AT_REST, places)
-        above = motion[:, BODY:] + rest - turned.height(motion, places._replace(h=np.zeros(len(y))))
-        return places._replace(h=_product(above, turned.stretched))
+        wheels = self.wheels._replace(y=struts.y)
+        level = turned.height(motion, wheels._replace(h=np.zeros(len(struts.y))))
+        above = motion[:, BODY:] + self._turned_at_rest.height(_AT_REST, wheels) - level
+        return wheels._replace(h=_product(above, turned.stretched))
 
     def _centre(self, turned: _Turned, wheels: Points) -> Array:
         """Return the horizontal acceleration of the common centre from the body's centre of gravity, shape (2, 1, time)."""
