@@ -151,6 +151,19 @@ def test_a_tall_car_is_identified_whose_body_turns_by_finite_angles(monkeypatch:
         assert result.parameters[name].value == pytest.approx(value, rel=2e-3), name
 
 
+@pytest.mark.slow
+def test_what_the_filter_of_all_loggers_still_rings_of_blames_no_sensor() -> None:
+    """A filter of order 4 at 100 Hz rings for 15 ms after a landing: a healthy sensor was left out, variances enlarged."""
+    test = draw_test("sensors", 36)
+    exact = tuple(replace(one, gain=1.0, tilt=(0.0, 0.0), misplaced=(0.0, 0.0)) for one in test.sensors)
+    ((campaign, truth),) = record([replace(test, sensors=exact)])
+    result = sprung.identify(campaign)
+    assert (result.verdict.state, result.faults, result.fit.inflation) == ("accept", (), 1.0)
+    for drop, lift_off in zip(result.drops, truth.last_lift_off, strict=True):
+        assert drop.start is not None
+        assert 0.005 < drop.start - lift_off < 0.03
+
+
 @pytest.mark.long
 def test_a_fit_far_from_the_recordings_does_not_shift_mass_to_the_wheels() -> None:
     """From an ordinary vehicle that bends it went to wheels of 300 kg, and everything after that failed."""

@@ -73,9 +73,17 @@ def fit_from_contact(
         Of these decays.
     """
     best, fit = tuple(decays), first
-    settled = False
+    settled, earliest = False, [-np.inf] * len(best)
     for _ in range(_PASSES if first.is_reversible else 1):
-        shifts = _shifts(best, models, fit)
+        ringing = [_ringing(decay, fit, drop) for drop, decay in enumerate(best)]
+        earliest = [
+            decay.start + samples / decay.rate if samples else before
+            for decay, samples, before in zip(best, ringing, earliest, strict=True)
+        ]
+        shifts = [
+            max(shift, round((start - decay.start) * decay.rate)) if np.isfinite(start) else shift
+            for decay, shift, start in zip(best, _shifts(best, models, fit), earliest, strict=True)
+        ]
         if not any(shifts):
             break
         moved, refitted = fit_from_start(best, shifts, fit, again)
@@ -181,6 +189,16 @@ def _landing(decay: FreeDecay, fit: FitResult, drop: int) -> int:
     """Return the samples at the start in which the landing is not over: friction reverses too fast for any sampling."""
     residual = np.nan_to_num(fit.residuals[drop][:, : int(_SHOCK * decay.rate)])
     return int(np.max(np.flatnonzero((np.abs(residual) > _FAR * fit.noise[:, None]).any(axis=0)) + 1, initial=0))
+
+
+def _ringing(decay: FreeDecay, fit: FitResult, drop: int) -> int:
+    """Return the samples at the start in which the filter of a logger still rings from what was before; 0 where none does.
+
+    It rings for a few samples, and the fitted vehicle explains all others. Where these are no noise, it differs from the model.
+    """
+    if decay.pads or decay.is_driven or not fit.is_reversible or fit.autocorrelation_inflation.max() > 1:
+        return 0
+    return _landing(decay, fit, drop)
 
 
 def _interpolated(decay: FreeDecay) -> int:
