@@ -24,7 +24,7 @@ from sprung.vehicle.load import Load
 from sprung.vehicle.model import LinearModel, Rows, highest_derivatives
 from sprung.vehicle.readout import sensor_rows
 from sprung.vehicle.sensor import Sensor
-from sprung.vehicle.turned_body import MOVING, Points, Struts, TurnedBody
+from sprung.vehicle.turned_body import BODY, MOVING, Points, Struts, TurnedBody
 
 Array = NDArray[np.float64]
 
@@ -148,26 +148,23 @@ def turned_body(model: LinearModel, tracks: Tracks, heights: Heights, load: Load
         [(one.mass, *one.position) for one in load.items if one.position is not None], heights, values, model
     )
     weights = np.zeros(len(model.heave))
-    weights[:3] = -STANDARD_GRAVITY * items.mass @ np.column_stack([np.ones_like(items.x), -items.x, items.y])
+    weights[:BODY] = -STANDARD_GRAVITY * items.mass @ np.column_stack([np.ones_like(items.x), -items.x, items.y])
     tilt = matrices.deflection(weights)[[_PITCH, _ROLL]]
     distances = half_distances(tracks)
     sides = np.array([STATIONS[station].side for station in WHEELS])
     y = {law: sides * [own[distances[station[0], law]] for station in WHEELS] for law in ("spring", "damper")}
-    springs, dampers = (np.diag([own[f"{letter}{station[0]}"] for station in WHEELS]) for letter in ("k_s", "c_s"))
-    for one, station in enumerate(WHEELS):
-        for other, opposite in enumerate(WHEELS):
-            if station[0] == opposite[0]:
-                springs[one, other] += sides[one] * sides[other] * own.get(f"k_a{station[0]}", 0.0)
-    travels = Rows.of([kinematics.travel(one, distances[one[0], "spring"]) for one in WHEELS], model.names).at(values)
-    static = springs @ travels @ matrices.deflection(matrices.M @ model.heave * STANDARD_GRAVITY)
-    unsprung = np.array([own[f"m_u{station[0]}"] for station in WHEELS])
     x = np.array([own["a"] if station[0] == "f" else -own["b"] for station in WHEELS])
+    bars = np.array([own.get(f"k_a{station[0]}", 0.0) for station in WHEELS])
+    on_one_axle = np.equal.outer(x, x) * np.outer(sides, sides)
+    springs = np.diag(_by_axle(model, "k_s", values)) + bars * on_one_axle
+    deflection = matrices.deflection(matrices.M @ model.heave * STANDARD_GRAVITY)
+    unsprung = _by_axle(model, "m_u", values)
     return TurnedBody(
         mass=own["m_s"] + float(unsprung.sum() + items.mass.sum()),
         tilt=(float(tilt[0]), float(tilt[1])),
         wheels=Points(x, y["spring"], np.full(len(x), heights.wheel_arms[1]), unsprung),
-        springs=Struts(y["spring"], springs, static),
-        dampers=Struts(y["damper"], dampers, np.zeros(len(x))),
+        springs=Struts(y["spring"], springs, springs @ _travels(model, tracks, "spring", values) @ deflection),
+        dampers=Struts(y["damper"], np.diag(_by_axle(model, "c_s", values)), np.zeros(len(x))),
         items=items,
     )
 
