@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from sprung.estimation import FitStatistics, characteristics_of, rates_at_motion_ratios
+from sprung.estimation.estimates import estimate_of
 from sprung.uncertainty import KnownValue
 from sprung.vehicle import CHARACTERISTICS, PARAMETERS, TABLE_1_CAR, Vehicle, evaluate_quantity, wheel_loads
+from sprung.vehicle.nuisances import sensor_unknown
 
 UNEVEN = TABLE_1_CAR.with_values(y_s=0.02, d_ksf=600.0, name="uneven")
 
@@ -123,3 +127,16 @@ def test_the_size_of_a_difference_between_the_sides_is_the_mean_of_both() -> Non
     assert fit.size("d_ktr") == UNEVEN.k_tr
     assert fit.size("y_s") == max(abs(UNEVEN.y_s), 0.1)
     assert fit.size("m_s") == UNEVEN.m_s
+
+
+def test_the_interval_of_what_is_unknown_of_a_sensor_is_even_around_its_value() -> None:
+    """Of a gain near zero a logarithmic interval had overflown."""
+    plain = fit_of(TABLE_1_CAR, 1e-6 * np.eye(len(TABLE_1_CAR.parameters)))
+    gain = sensor_unknown("gain", "body_fl")
+    fit = replace(
+        plain, names=(*plain.names, gain), values=np.append(plain.values, 1e-6), slopes=np.append(plain.slopes, 1.0),
+        relative_covariance=1e-4 * np.eye(len(plain.names) + 1), covariance=1e-4 * np.eye(len(plain.names) + 1),
+        undetermined=np.zeros((len(plain.names) + 1, 0)),
+    )  # fmt: skip
+    found = estimate_of(fit, {}, gain)
+    assert found.interval95 == pytest.approx((1e-6 - 1.96e-2, 1e-6 + 1.96e-2), rel=1e-3)

@@ -12,7 +12,7 @@ from sprung.display import shown
 from sprung.estimation.statistics import FitStatistics
 from sprung.estimation.subspace import canonical_basis
 from sprung.uncertainty import NORMAL_95, Estimate, KnownValue, Ratio
-from sprung.vehicle import DERIVED, LOAD_MASS, PARAMETERS, evaluate_quantity, is_nuisance, parameter_of
+from sprung.vehicle import DERIVED, LOAD_MASS, evaluate_quantity, is_nuisance, parameter_of
 from sprung.vibration import largest_entry
 
 Real = NDArray[np.float64]
@@ -139,9 +139,8 @@ def estimate_of(fit: FitStatistics, known: Mapping[str, KnownValue], name: str) 
 
 
 def _interval(name: str, value: float, std: float) -> tuple[float, float]:
-    if (
-        name not in PARAMETERS or PARAMETERS[name].positive
-    ):  # estimated by its logarithm, so the interval is even there and never negative
+    # Estimated by its logarithm, so that the interval is even there and never negative; what is unknown of a sensor is not.
+    if name in DERIVED or parameter_of(name).positive:
         factor = float(np.exp(NORMAL_95 * std / value))
         return value / factor, value * factor
     return value - NORMAL_95 * std, value + NORMAL_95 * std
