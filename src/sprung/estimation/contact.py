@@ -73,15 +73,16 @@ def fit_from_contact(
         Of these decays.
     """
     best, fit = tuple(decays), first
-    settled, earliest = False, [-np.inf] * len(best)
+    settled, earliest = False, [decay.start - decay.earlier.shape[1] / decay.rate for decay in best]
     for _ in range(_PASSES if first.is_reversible else 1):
         ringing = [_ringing(decay, fit, drop) for drop, decay in enumerate(best)]
+        # Once a start is behind what rings, nothing shows that it did.
         earliest = [
             decay.start + samples / decay.rate if samples else before
             for decay, samples, before in zip(best, ringing, earliest, strict=True)
         ]
         shifts = [
-            max(shift, round((start - decay.start) * decay.rate)) if np.isfinite(start) else shift
+            max(shift, round((start - decay.start) * decay.rate))
             for decay, shift, start in zip(best, _shifts(best, models, fit), earliest, strict=True)
         ]
         if not any(shifts):

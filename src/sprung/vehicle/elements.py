@@ -225,14 +225,14 @@ def _angles(layout: Layout) -> list[Row]:
 def _elements_of_the_body(extras: Collection[str], wheelbase: float, layout: Layout) -> Iterator[Element]:
     """Yield the elements of a body that is not one rigid mass."""
     if "engine" in extras:
-        yield from _attached_mass("e", kinematics.engine_bay(), kinematics.engine())
+        yield from _attached_mass(("m_e", "k_e", "c_e"), kinematics.engine_bay(), kinematics.engine())
     if "occupants" in extras:
         sides = (1.0, -1.0) if layout.rolls else (0.0,)
         for side in sides:
             seats, people = kinematics.seats(side, wheelbase), kinematics.occupants(side)
-            yield from _attached_mass("o", seats, people, 1 / len(sides))
+            yield from _attached_mass(("m_o", "k_o", "c_o"), seats, people, 1 / len(sides))
             if "uneven-occupants" in extras:
-                yield from _attached_mass("o", seats, people, side, "d_{}")
+                yield from _attached_mass(("d_mo", "d_ko", "d_co"), seats, people, side)
     # Modal masses and rates are those for the angle between the axles and for the rise of the middle.
     for term, mass, index, row, size in (
         ("twist", "I_w", "w", kinematics.torsion(), wheelbase**2),
@@ -244,12 +244,12 @@ def _elements_of_the_body(extras: Collection[str], wheelbase: float, layout: Lay
             yield Element("damper", f"c_{index}", row, size)
 
 
-def _attached_mass(index: str, below: Row, own: Row, part: float = 1.0, name: str = "{}_") -> Iterator[Element]:
-    """Yield the elements of a mass on a spring and a damper of its own, or of a part of them, by the name of their parameters.
+def _attached_mass(names: tuple[str, str, str], below: Row, own: Row, part: float = 1.0) -> Iterator[Element]:
+    """Yield the elements of a mass on a spring and a damper of its own, or of a part of them, by the names of all three.
 
     The sprung mass and its inertias include it: it is taken off the body, where it is attached, and moves by itself.
     """
-    mass, spring, damper = (f"{name.format(one)}{index}" for one in "mkc")
+    mass, spring, damper = names
     yield Element("mass", mass, below, -part)
     yield Element("mass", mass, own, part)
     yield Element("spring", spring, below - own, part)

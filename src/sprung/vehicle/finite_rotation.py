@@ -163,8 +163,9 @@ def turned_body(model: LinearModel, tracks: Tracks, heights: Heights, load: Load
         mass=own["m_s"] + float(unsprung.sum() + items.mass.sum()),
         tilt=(float(tilt[0]), float(tilt[1])),
         wheels=Points(x, y["spring"], np.full(len(x), heights.wheel_arms[1]), unsprung),
-        springs=Struts(y["spring"], springs, springs @ _travels(model, tracks, "spring", values) @ deflection),
-        dampers=Struts(y["damper"], np.diag(_by_axle(model, "c_s", values)), np.zeros(len(x))),
+        springs=Struts(y["spring"], springs),
+        dampers=Struts(y["damper"], np.diag(_by_axle(model, "c_s", values))),
+        preload=springs @ _travels(model, tracks, "spring", values) @ deflection,
         items=items,
     )
 

@@ -240,7 +240,7 @@ _WITHOUT_EFFECT: Mapping[str, float] = {
     "k_v": 1e7,
     "c_v": 1e4,
     "k_o": 1e5,
-    "t_o": 0.37,
+    "t_o": _TABLE["t_o"].usual,
 }
 """Parameters of extras without effect where the others of the extra are neutral, and their values in a vehicle without it."""
 

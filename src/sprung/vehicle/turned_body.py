@@ -51,13 +51,10 @@ class Struts(NamedTuple):
         Left of the centreline, m, shape (wheel,).
     rate
         N/m or N s/m of each wheel's compression, shape (wheel, wheel): an anti-roll bar acts at both wheels of an axle.
-    static
-        Force of compression at rest, N, shape (wheel,).
     """
 
     y: Array
     rate: Array
-    static: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,6 +73,8 @@ class TurnedBody:
         Unsprung masses at the places of the springs, as the body stands.
     springs, dampers
         Those of the suspension.
+    preload
+        Compressive force of each spring at rest, N, shape (wheel,).
     items
         Of the load.
     """
@@ -85,6 +84,7 @@ class TurnedBody:
     wheels: Points
     springs: Struts
     dampers: Struts
+    preload: Array
     items: Points
 
     def forces(self, motion: Array) -> Array:
@@ -114,28 +114,32 @@ class TurnedBody:
     def _forces(self, motion: Array) -> Array:
         turned = _Turned.of(motion, self.tilt)
         forces = np.zeros(motion.shape[1:])
-        wheels = self._slid(turned, motion, self.springs)
-        damped = wheels if np.array_equal(self.dampers.y, wheels.y) else self._slid(turned, motion, self.dampers)
+        wheels = self._displaced_wheels(turned, motion, self.springs)
+        damped = (
+            wheels if np.array_equal(self.dampers.y, wheels.y) else self._displaced_wheels(turned, motion, self.dampers)
+        )
         centre = self._centre(turned, wheels)
         # Wheels move sideways with the body, and slide along its axis.
-        push = wheels.mass[:, None] * (turned.sideways(wheels)[:, _SECOND] - centre)
-        spring = self.springs.static[:, None] + self.springs.rate @ (wheels.h[_VALUE] - self.wheels.h[:, None])
-        damper = self.dampers.static[:, None] + self.dampers.rate @ damped.h[_RATE]
-        forces[1:BODY] += turned.moments(wheels, push)
-        forces += turned.by_slide(wheels, spring + turned.on_axis(push)) + turned.by_slide(damped, damper)
+        push = wheels.mass[:, None] * (turned.horizontal_places(wheels)[:, _SECOND] - centre)
+        spring = self.preload[:, None] + self.springs.rate @ (wheels.h[_VALUE] - self.wheels.h[:, None])
+        damper = self.dampers.rate @ damped.h[_RATE]
+        forces[1:BODY] += turned.horizontal_moments(wheels, push)
+        forces += turned.travel_forces(wheels, spring + turned.along_axis(push)) + turned.travel_forces(damped, damper)
         # Items move in all directions, and have weight.
         mass = self.items.mass[:, None]
-        forces[1:BODY] += turned.moments(self.items, mass * (turned.sideways(self.items)[:, _SECOND] - centre))
+        forces[1:BODY] += turned.horizontal_moments(
+            self.items, mass * (turned.horizontal_places(self.items)[:, _SECOND] - centre)
+        )
         lifted = mass * (turned.height(motion, self.items)[_SECOND] + STANDARD_GRAVITY)
-        forces[:BODY] += turned.by_height(self.items, lifted)
+        forces[:BODY] += turned.lift_forces(self.items, lifted)
         return forces
 
     def _readings(self, motion: Array, points: Points) -> Array:
         turned = _Turned.of(motion, self.tilt)
-        wheels = self._slid(turned, motion, self.springs)
-        aside = np.concatenate([turned.sideways(one)[:, _SECOND] for one in (points, wheels)], axis=1)
+        wheels = self._displaced_wheels(turned, motion, self.springs)
+        aside = np.concatenate([turned.horizontal_places(one)[:, _SECOND] for one in (points, wheels)], axis=1)
         lifted = np.concatenate([turned.height(motion, points)[_SECOND], motion[_SECOND, BODY:]]) + STANDARD_GRAVITY
-        readings: Array = turned.on_axis(aside - self._centre(turned, wheels)) + turned.upright[_VALUE] * lifted
+        readings: Array = turned.along_axis(aside - self._centre(turned, wheels)) + turned.upright[_VALUE] * lifted
         return readings
 
     @cached_property
@@ -146,16 +150,18 @@ class TurnedBody:
     def _turned_at_rest(self) -> _Turned:
         return _Turned.of(_AT_REST, self.tilt)
 
-    def _slid(self, turned: _Turned, motion: Array, struts: Struts) -> Points:
-        """Return the wheels where they have slid to along the body's axis, as seen at struts."""
+    def _displaced_wheels(self, turned: _Turned, motion: Array, struts: Struts) -> Points:
+        """Return the wheels as the suspension travel has displaced them along the body's axis, at the places of struts."""
         wheels = self.wheels._replace(y=struts.y)
         level = turned.height(motion, wheels._replace(h=np.zeros(len(struts.y))))
         above = motion[:, BODY:] + self._turned_at_rest.height(_AT_REST, wheels) - level
-        return wheels._replace(h=_product(above, turned.stretched))
+        return wheels._replace(h=_product(above, turned.upright_reciprocal))
 
     def _centre(self, turned: _Turned, wheels: Points) -> Array:
         """Return the horizontal acceleration of the common centre from the body's centre of gravity, shape (2, 1, time)."""
-        moved = [np.einsum("p,apt->at", one.mass, turned.sideways(one)[:, _SECOND]) for one in (wheels, self.items)]
+        moved = [
+            np.einsum("p,apt->at", one.mass, turned.horizontal_places(one)[:, _SECOND]) for one in (wheels, self.items)
+        ]
         centre: Array = (moved[0] + moved[1])[:, None] / self.mass
         return centre
 
@@ -182,7 +188,7 @@ class _Turned:
         return _product(self.cos_pitch, self.cos_roll)
 
     @cached_property
-    def stretched(self) -> Array:
+    def upright_reciprocal(self) -> Array:
         """One over it."""
         value, rate, second = self.upright
         return np.stack([1 / value, -rate / value**2, (2 * rate**2 / value - second) / value**2])
@@ -198,36 +204,36 @@ class _Turned:
         above: Array = motion[:, :1] - points.x[:, None] * self.sin_pitch + rolled + _scaled(points.h, self.upright)
         return above
 
-    def sideways(self, points: Points) -> Array:
+    def horizontal_places(self, points: Points) -> Array:
         """Places forward and to the left of the centre of gravity, (2, 3, point, time)."""
         x, y = points.x[:, None], points.y[:, None]
         forward = x * self.cos_pitch + y * _product(self.sin_pitch, self.sin_roll) + _scaled(points.h, self.forward)
         return np.stack([forward, y * self.cos_roll - _scaled(points.h, self.sin_roll)])
 
-    def on_axis(self, force: Array) -> Array:
+    def along_axis(self, force: Array) -> Array:
         """Part along the body's axis of horizontal forces (2, point, time)."""
         along: Array = self.forward[_VALUE] * force[0] - self.sin_roll[_VALUE] * force[1]
         return along
 
-    def moments(self, points: Points, force: Array) -> Array:
+    def horizontal_moments(self, points: Points, force: Array) -> Array:
         """Moments by pitch and by roll of horizontal forces (2, point, time)."""
-        aside, up = self._rolled(points)
+        aside, up = self._pitched_places(points)
         x, sin, cos = points.x[:, None], self.sin_pitch[_VALUE], self.cos_pitch[_VALUE]
         pitch = (up * cos - x * sin) * force[0]
         roll = sin * aside * force[0] - up * force[1]
         return np.stack([pitch.sum(axis=0), roll.sum(axis=0)])
 
-    def by_height(self, points: Points, force: Array) -> Array:
+    def lift_forces(self, points: Points, force: Array) -> Array:
         """Generalised forces on bounce, pitch and roll of vertical forces (point, time)."""
-        aside, up = self._rolled(points)
+        aside, up = self._pitched_places(points)
         pitch = -(points.x[:, None] * self.cos_pitch[_VALUE] + up * self.sin_pitch[_VALUE]) * force
         return np.stack([one.sum(axis=0) for one in (force, pitch, self.cos_pitch[_VALUE] * aside * force)])
 
-    def by_slide(self, wheels: Points, force: Array) -> Array:
+    def travel_forces(self, wheels: Points, force: Array) -> Array:
         """Generalised forces of forces (wheel, time) along the body's axis on wheels that slide along it."""
         level = wheels._replace(h=np.zeros(len(wheels.x)))
-        vertical = force * self.stretched[_VALUE]
-        body = -self.by_height(level, vertical)
+        vertical = force * self.upright_reciprocal[_VALUE]
+        body = -self.lift_forces(level, vertical)
         h = wheels.h[_VALUE]
         tangents = np.concatenate(
             [self.sin_pitch[_VALUE] / self.cos_pitch[_VALUE], self.sin_roll[_VALUE] / self.cos_roll[_VALUE]]
@@ -235,7 +241,7 @@ class _Turned:
         body[1:] += tangents * (h * force).sum(axis=0)
         return np.concatenate([body, vertical])
 
-    def _rolled(self, points: Points) -> tuple[Array, Array]:
+    def _pitched_places(self, points: Points) -> tuple[Array, Array]:
         """Places to the left and up in axes that pitch with the body and do not roll, (point, time) each."""
         y, h = points.y[:, None], points.h[_VALUE] if points.h.ndim == 3 else points.h[:, None]
         sin, cos = self.sin_roll[_VALUE], self.cos_roll[_VALUE]
