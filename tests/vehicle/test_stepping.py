@@ -217,10 +217,15 @@ def test_friction_grows_with_the_load() -> None:
 
 
 @pytest.mark.parametrize("ground", [False, True])
-def test_derivatives_are_those_of_the_steps_themselves(ground: bool) -> None:
+def test_derivatives_are_those_of_the_steps_themselves(ground: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """But for what the surplus does to itself: c h/m of its own part, up to 0.08 of 0.1 with all laws on a wheel at 1 ms.
+
+    Forces are solved for almost to rounding: differences of them would show what is left.
+    """
+    monkeypatch.setattr("sprung.vehicle.stepping._SOLVED", 1e-11)
     extras = tuple(extra for extra in EXTRAS if extra not in (*LINEAR_EXTRAS, "bump-stop"))
     names, values = values_of(extras)
-    states, memories, step, steps = some_states(2, 1), np.full((2, 8), 0.3), 0.002, 60
+    states, memories, step, steps = some_states(2, 1), np.full((2, 8), 0.3), 0.001, 90
     if ground:
         states[:, 3:7] = 0.03 + np.abs(states[:, 3:7])  # all wheels in the air, to come down one after the other
     before = stepper(extras, step, ground=ground)
@@ -249,8 +254,10 @@ def test_derivatives_are_those_of_the_steps_themselves(ground: bool) -> None:
     def check(unknown: int, ends: Array, size: float) -> None:
         slope = (ends[0] - ends[1]) / (2 * size)
         scale = np.abs(slope).max(axis=(0, 1)) + 1e-9 * np.abs(slope).max()
-        # In the step in which a wheel lands, the force at its end is put right only so often.
-        assert np.all(np.abs(found[..., unknown] - slope) < (1e-2 if ground else 2e-3) * scale)
+        error = (found[..., unknown] - slope) / scale
+        # Where a knot is passed just at a sample the surplus jumps a little, which a difference there shows enlarged.
+        assert np.quantile(np.abs(error), 0.995) < 2e-3
+        assert np.sqrt(np.mean(error**2)) < 5e-3
 
     # The rear axle has the laws of the front one; beside the ground, the other laws are those of the vehicle that stands on it.
     asked = [name for name in names if name[-1] != "r" and (not ground or name in WITH_GROUND)]
@@ -267,13 +274,14 @@ def test_derivatives_are_those_of_the_steps_themselves(ground: bool) -> None:
 
 
 @pytest.mark.slow
-def test_knots_of_a_damper_curve_leave_the_steps_of_second_order() -> None:
-    """Forces run straight within a step whether or not a knot lies in it: half the step leaves about a quarter of the error.
+@pytest.mark.parametrize("rounded", [False, True])
+def test_knots_of_a_damper_curve_leave_the_steps_of_third_order(rounded: bool) -> None:
+    """Half the step leaves an eighth of the error or less, though dampers pass a knot within a step.
 
-    Straight forces miss (ωh)²/12 of the curved ones: 4e-4 at 1 ms, the step of a fit, and 11 Hz. The dampers lose up to 0.6
-    of 1500 N s/m at 0.3 m/s, which is 7 m/s² at a wheel of 40 kg.
+    Forces that run straight over a step would leave a quarter: they miss (ωh)²/12 of the curved ones, 4e-4 at 1 ms and 11 Hz.
+    The dampers lose up to 0.6 of 1500 N s/m at 0.3 m/s, 7 m/s² at a wheel of 40 kg; a tenth of that miss is allowed.
     """
-    extras, state = ("rebound", "damper-curve"), some_states(2, 3)
+    extras, state = ("rebound", "damper-curve", *(("rounded-knee",) if rounded else ())), some_states(2, 3)
     values, model = values_of(extras)[1], model_of(extras)
     rows = model.accelerations(values)[0]
 
@@ -285,10 +293,9 @@ def test_knots_of_a_damper_curve_leave_the_steps_of_second_order() -> None:
         return found
 
     exact = accelerations(128)
-    errors = [float(np.sqrt(np.mean((accelerations(every) - exact) ** 2))) for every in (2, 4, 8)]
-    assert errors[0] / errors[1] > 3
-    assert errors[1] / errors[2] > 3
-    assert errors[2] < 2 * 4e-4 * 7
+    errors = [float(np.sqrt(np.mean((accelerations(every) - exact) ** 2))) for every in (2, 8)]
+    assert errors[0] / errors[1] > 8**2 / 2  # two halvings; where in a step a knot is passed is left to chance
+    assert errors[1] < 0.1 * 4e-4 * 7
 
 
 @pytest.mark.parametrize("extras", [("friction", "rebound"), ("bump-stop",)])
@@ -301,13 +308,18 @@ def test_motions_near_to_others_are_those_of_the_steps(extras: tuple[str, ...]) 
     _, segments, transitions = differentiate_motions(before, sequential, np.zeros((2, 0, 14 + before.forces.number)), 2)
     first = np.arange(segments.shape[1]) * segments_of(301, 2)[1]
     starts = np.concatenate([sequential.states[first], sequential.memories[first]], axis=2)
-    for size in (1e-5, 3e-3, 1.0):
-        there = stepper(extras, 0.002, values * (1 + size * np.cos(np.arange(len(names)))))
-        near = NearbyMotion(np.swapaxes(starts, 0, 1), transitions, sequential.forces)
+    for change in (1e-5, 3e-3, 1.0):
+        there = stepper(extras, 0.002, values * (1 + change * np.cos(np.arange(len(names)))))
+        forces = np.concatenate([sequential.forces, sequential.surplus], axis=2)
+        near = NearbyMotion(np.swapaxes(starts, 0, 1), transitions, forces)
         expected = there.integrate(states, memories, 301)
         # Forces at the end of a step are corrected only so often, those at the start of a segment once more.
-        for one, other in zip(integrate_near(there, states, memories, 301, 2, near), expected, strict=True):
-            np.testing.assert_allclose(one, other, atol=1e-6 * np.abs(other).max(initial=0.0))
+        sizes = [np.abs(part).max(initial=0.0) for part in expected]
+        sizes[-1] = sizes[1]  # the surplus is as precise as the forces
+        for one, other, size in zip(
+            integrate_near(there, states, memories, 301, 2, near), expected, sizes, strict=True
+        ):
+            np.testing.assert_allclose(one, other, atol=1e-6 * size)
 
 
 @pytest.mark.parametrize(

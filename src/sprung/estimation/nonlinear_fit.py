@@ -25,8 +25,10 @@ from sprung.vehicle import NonlinearModel, Sensor
 
 Real = NDArray[np.float64]
 
-_COARSE, _FINE = 0.0025, 0.00101
-"""s of a step at most: on the way, and where its error must not be taken for anything else."""
+_COARSE, _FINE, _FINEST = 0.0025, 0.00201, 0.00101
+"""s of a step at most: on the way, and where its error must not be taken for anything else; the last where it is of second
+order, as friction turns round within a step, or rates behind mounts jump.
+"""
 
 _MOST_STEPS = 100
 
@@ -99,20 +101,21 @@ def fit_nonlinear(
     progress(Step(f"fitting with {laws}, step by step through all drops"))
     known = statements_of(known, sensors, next(iter(models.values())).names)
     steps, values = 0, expected_nuisances(known) | dict(start)
+    fine = _longest_step(models)
     # What a low-pass makes of a friction that turns round depends on when it does: its corner is found by fits to beginnings.
     stages = (
         [
             (
                 [_beginning(decay) for decay in decays],
                 max(enough, NEAR if beginning_only else _ON_THE_WAY),
-                _COARSE if low_pass is None or not beginning_only else _FINE,
+                _COARSE if low_pass is None or not beginning_only else fine,
             )
         ]
         if beginning_only or not near
         else []
     )
     if not beginning_only:
-        stages.append((list(decays), enough, _FINE))
+        stages.append((list(decays), enough, fine))
     for part, tolerance, longest_step in stages:
         objective = _objective(part, models, sensors, known, states, tilting, low_pass, longest_step)
         problem = _problem(objective, known, values, usual)
@@ -168,7 +171,14 @@ def score_stepped_terms(
     known = statements_of(known, sensors, next(iter(models.values())).names)
     values = expected_nuisances(known) | dict(values)
     objective = _objective(
-        decays, models, sensors, known, states, tilting, low_pass, _COARSE if low_pass is None else _FINE
+        decays,
+        models,
+        sensors,
+        known,
+        states,
+        tilting,
+        low_pass,
+        _COARSE if low_pass is None else _longest_step(models),
     )
     problem = _problem(objective, known, values)
     names, priors = problem.priors.coordinates.names, problem.priors
@@ -194,6 +204,11 @@ def score_stepped_terms(
         basis = np.hstack([fitted, left[:, sizes > _BOUND]])
         gains[name] = score_test(basis.T @ information @ basis, basis.T @ gradient, fitted.shape[1]).gain()
     return gains
+
+
+def _longest_step(models: Mapping[str, NonlinearModel]) -> float:
+    model = next(iter(models.values()))
+    return _FINEST if model.forces.memories or model.linear.massive < model.linear.size else _FINE
 
 
 def _objective(

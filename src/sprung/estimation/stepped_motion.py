@@ -63,7 +63,8 @@ class SteppedMotion:
         first = np.minimum(np.arange(number) * length, steps)
         starts = np.concatenate([self.trajectory.states[first], self.trajectory.memories[first]], axis=-1)
         moved = np.swapaxes(starts, 0, 1) + np.einsum("dsiu,du->dsi", by_unknown, change, optimize=True)
-        return NearbyMotion(moved, transitions, self.trajectory.forces)
+        forces = np.concatenate([self.trajectory.forces, self.trajectory.surplus], axis=2)
+        return NearbyMotion(moved, transitions, forces)
 
     def _inputs(self, every: int) -> Real:
         """Return {X, Ẋ, u, 1} of one in so many steps, shape (time, drop, input)."""

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.vehicle.force_laws import ElementForce, ElementInput, ForceLaw
+from sprung.vehicle.kinks import Kinks
 
 Array = NDArray[np.float64]
 
@@ -114,6 +115,7 @@ def damper_curve(parts: CurveParts = _KNOTS_ALONE) -> ForceLaw:
         False,
         partial(_force, parts),
         partial(_derivatives, parts),
+        partial(_kinks, parts),
     )
 
 
@@ -191,6 +193,18 @@ def _derivatives(parts: CurveParts, parameters: Array, given: ElementInput) -> t
     for of_velocity, of_ratio in zip(by_velocity, by_ratio, strict=True):
         force += [of_velocity, of_ratio]
     return np.stack(force), np.zeros((len(force), *size.shape))
+
+
+def _kinks(parts: CurveParts, parameters: Array) -> Kinks:
+    """Return the knots of both sides; the force of each bends by what it takes off the slope."""
+    own, none = CurveParameters.of(parts, list(parameters), _ONE), np.zeros_like(parameters[0])
+    found = []
+    for sign in (1.0, -1.0):
+        side = _side(parts, own, np.array(sign > 0))
+        width = none if side.rounding is None else side.rounding
+        for velocity, drop in zip(side.velocities, side.drops, strict=True):
+            found.append((none, none + 1.0, sign * velocity, -sign * side.damping * drop, none + width))
+    return Kinks(*(np.stack(part) for part in zip(*found, strict=True)))
 
 
 def _knot(size: Array, velocity: Array, rounding: Array | None) -> tuple[Array, Array, Array, Array]:

@@ -15,6 +15,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.vehicle.kinks import Kinks
+
 Array = NDArray[np.float64]
 
 _SHORTEST = 1e-7
@@ -88,12 +90,15 @@ class ForceLaw:
         Forces from the law's parameters, shape (parameter, element), and the input.
     differentiate
         Derivatives of force and memory by the law's parameters, each of shape (parameter, ..., element), from the same.
+    kinks
+        Where the force bends, from the law's parameters, which may be complex; None where it nowhere does.
     """
 
     name: str
     has_memory: bool
     evaluate: Callable[[Array, ElementInput], ElementForce]
     differentiate: Callable[[Array, ElementInput], tuple[Array, Array]]
+    kinks: Callable[[Array], Kinks] | None = None
 
 
 def _friction_length(parameters: Array) -> tuple[Array, Array]:
@@ -161,6 +166,11 @@ def _rebound_derivatives(parameters: Array, given: ElementInput) -> tuple[Array,
     extension = np.maximum(given.rate, 0.0)
     force = np.stack([damping * extension, (ratio - 1.0) * extension])
     return force, np.zeros_like(force)
+
+
+def _rebound_kinks(parameters: Array) -> Kinks:
+    (ratio, damping), none = parameters[:, None], np.zeros_like(parameters[:1])
+    return Kinks(none, none + 1.0, none, (ratio - 1.0) * damping, none)
 
 
 def _progressive(parameters: Array, given: ElementInput) -> ElementForce:
@@ -231,6 +241,11 @@ def _bump_stop_derivatives(parameters: Array, given: ElementInput) -> tuple[Arra
     return force, np.zeros_like(force)
 
 
+def _bump_stop_kinks(parameters: Array) -> Kinks:
+    (stiffness, clearance), none = parameters[:, None], np.zeros_like(parameters[:1])
+    return Kinks(none + 1.0, none, -clearance, -stiffness, none)
+
+
 def _tyre_tension(parameters: Array, given: ElementInput) -> Array:
     """Return the tension of a tyre that was fixed to the ground, N; zero where it is compressed."""
     stiffness, *damping = parameters
@@ -252,6 +267,11 @@ def _ground_derivatives(parameters: Array, given: ElementInput) -> tuple[Array, 
     return force, np.zeros_like(force)
 
 
+def _ground_kinks(parameters: Array) -> Kinks:
+    (stiffness, *damping), none = parameters[:, None], np.zeros_like(parameters[:1])
+    return Kinks(stiffness, sum(damping, none), none, none - 1.0, none)
+
+
 def _uneven_ground(side: float, parameters: Array, given: ElementInput) -> ElementForce:
     mean, uneven, *damping = parameters
     return _ground(np.stack([mean + side * uneven, *damping]), given)
@@ -264,6 +284,11 @@ def _uneven_ground_derivatives(side: float, parameters: Array, given: ElementInp
     return force, np.zeros_like(force)
 
 
+def _uneven_ground_kinks(side: float, parameters: Array) -> Kinks:
+    mean, uneven, *damping = parameters
+    return _ground_kinks(np.stack([mean + side * uneven, *damping]))
+
+
 FRICTION = ForceLaw("friction", True, _friction, _friction_derivatives)
 """Dry friction with presliding: force F, N, and presliding stiffness s, N/m, after :term:`Dahl <Dahl model>` (Aerospace
 Corporation TOR-0158(3107-18)-1, 1968, exponent one): f' = s x' - (s/F) |x'| f."""
@@ -272,7 +297,7 @@ LOAD_FRICTION = ForceLaw("load-friction", True, _load_friction, _load_friction_d
 """What a load adds to a dry friction, per weight that the spring carries of it: a coefficient u, and the force F, N, and
 presliding stiffness s, N/m, of the friction without the load. It builds up over the same travel F/s."""
 
-REBOUND = ForceLaw("rebound", False, _rebound, _rebound_derivatives)
+REBOUND = ForceLaw("rebound", False, _rebound, _rebound_derivatives, _rebound_kinks)
 """Excess of rebound over compression damping: ratio r of the two and damping c in compression, N s/m."""
 
 PROGRESSIVE = ForceLaw("progressive", False, _progressive, _progressive_derivatives)
@@ -289,10 +314,10 @@ TYRE_CURVE = ForceLaw("tyre-curve", False, _tyre_curve, _tyre_curve_derivatives)
 k where it first touches the ground, N/m; the travel is the height of the wheel above there. The whole tyre has the force
 k d (1 + h d/2) at the deflection d."""
 
-BUMP_STOP = ForceLaw("bump-stop", False, _bump_stop, _bump_stop_derivatives)
+BUMP_STOP = ForceLaw("bump-stop", False, _bump_stop, _bump_stop_derivatives, _bump_stop_kinks)
 """Bump stop: stiffness, N/m, and the compression at which it is met, m, from the empty vehicle at rest."""
 
-GROUND = ForceLaw("ground", False, _ground, _ground_derivatives)
+GROUND = ForceLaw("ground", False, _ground, _ground_derivatives, _ground_kinks)
 """Unilateral contact of a tyre with the ground: cancels the tension of the linear tyre. Tyre rate, N/m, and tyre damping,
 N s/m, where it is a parameter; the travel is the height of the wheel above that at which its tyre just touches the ground."""
 
@@ -306,7 +331,13 @@ UNEVEN_FRICTION: Mapping[float, ForceLaw] = {
 mean, N; and force F, N, and presliding stiffness s, N/m, of the mean. It builds up over the same travel F/s on both sides."""
 
 UNEVEN_GROUND: Mapping[float, ForceLaw] = {
-    side: ForceLaw(f"ground {name}", False, partial(_uneven_ground, side), partial(_uneven_ground_derivatives, side))
+    side: ForceLaw(
+        f"ground {name}",
+        False,
+        partial(_uneven_ground, side),
+        partial(_uneven_ground_derivatives, side),
+        partial(_uneven_ground_kinks, side),
+    )
     for side, name in ((1.0, "left"), (-1.0, "right"))
 }
 """The same where tyre rates of both sides differ, by the side, 1 on the left: mean rate, N/m, by how much that of the left tyre

@@ -20,6 +20,7 @@ from sprung.vehicle.elements import Element
 from sprung.vehicle.force_laws import ElementForce, ElementInput, ForceLaw
 from sprung.vehicle.heights import LEVEL, Heights
 from sprung.vehicle.kinematics import state_variables
+from sprung.vehicle.kinks import KinkForces
 from sprung.vehicle.load import EMPTY, Load
 from sprung.vehicle.model import LinearModel, Matrices, Rows, highest_derivatives, state_matrix
 from sprung.vehicle.nonlinear_elements import NonlinearElement
@@ -110,6 +111,15 @@ class NonlinearForces(NamedTuple):
     def parameters(self, values: Array) -> tuple[Array, ...]:
         """Return the parameters of each law, shape (parameter, element), from all parameters, SI, shape (parameter,)."""
         return tuple(values[positions] for *_, positions in self.laws)
+
+    def kinks(self, values: Array) -> KinkForces:
+        """Return where the forces bend, from all parameters, SI, shape (parameter,)."""
+        bent = [
+            (law.kinks, np.arange(self.number)[at], positions)
+            for law, at, _, positions in self.laws
+            if law.kinks is not None
+        ]
+        return KinkForces.of(bent, self.number, values, self.of_laws)
 
     def evaluate(self, parameters: Sequence[Array], given: ElementInput) -> ElementForce:
         """Return the force of each row.

@@ -45,7 +45,7 @@ class NearbyMotion(NamedTuple):
     transitions
         The end of each segment by its start, SI, shape (drop, segment, start, start).
     forces
-        Of the rows of the nonlinear elements, N, shape (step + 1, drop, row).
+        Of the rows of the nonlinear elements, and their surplus, N, shape (step + 1, drop, 2 row).
     """
 
     starts: Array
@@ -137,8 +137,10 @@ def integrate_near(
     error = 1.0
     for left in reversed(range(_MOST_PASSES)):
         begin = starts[slots].reshape(len(slots), -1, starts.shape[2])
-        motions, kept = stepper.follow(begin[..., :state], begin[..., state:], length, similar=similar, nearly=_NEARLY)
-        similar = motions[..., state:-1]
+        motions, kept, surplus = stepper.follow(
+            begin[..., :state], begin[..., state:], length, similar=similar, nearly=_NEARLY
+        )
+        similar = np.concatenate([motions[..., state:-1], surplus], axis=3)
         ends = by_drop(np.concatenate([motions[-1:, ..., :state], kept[-1:]], axis=3))[:, :, 0]
         changes = np.zeros_like(starts)
         for segment in range(number - 1):
@@ -150,7 +152,10 @@ def integrate_near(
                 np.swapaxes(np.concatenate(np.swapaxes(by_drop(values[:-1]), 0, 1), axis=1)[:, : steps + 1], 0, 1)
                 for values in (motions, kept)
             )
-            return Trajectory(whole[..., :state], whole[..., state:-1], memory)
+            # Those of the step that ends where a segment begins belong to the segment before.
+            moving = np.swapaxes(np.concatenate(np.swapaxes(by_drop(surplus[1:]), 0, 1), axis=1)[:, :steps], 0, 1)
+            moving = np.concatenate([np.zeros_like(moving[:1]), moving])
+            return Trajectory(whole[..., :state], whole[..., state:-1], memory, moving)
         # Further passes reduce the error as this one did.
         if not math.log(error) + left * math.log(error / previous) <= math.log(_CLOSED):
             break

@@ -11,11 +11,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.vehicle.force_laws import ElementInput
+from sprung.vehicle.force_laws import ElementForce, ElementInput
 from sprung.vehicle.segments import cut_into_segments, segments_of, steps_of_segments
 from sprung.vehicle.stepping import Stepper, Trajectory
 
@@ -55,13 +56,13 @@ def differentiate_motions(
     """
     number, length = segments_of(len(trajectory.states) - 1, every)
     with np.errstate(over="ignore", invalid="ignore"):
-        motion, given = _cut(stepper, trajectory, number, length)
+        motion, given, surplus = _cut(stepper, trajectory, number, length)
 
     def differentiate(kind: int) -> tuple[Array, Array]:
         own, here = stepper.of_kind(kind), slice(kind, kind + 1)
         inputs = ElementInput(*(part[:, here] for part in given))
         with np.errstate(over="ignore", invalid="ignore"):  # of this thread
-            return _differentiate_segments(own, motion[:, here], inputs, outputs[here], every)
+            return _differentiate_segments(own, motion[:, here], inputs, surplus[:, here], outputs[here], every)
 
     # No kind waits for another: each may have a processor of its own.
     with ThreadPoolExecutor(len(outputs)) as pool:
@@ -87,7 +88,7 @@ def differentiate_motions(
     return of_drop, starts, ends[..., :start]
 
 
-def _cut(stepper: Stepper, trajectory: Trajectory, number: int, length: int) -> tuple[Array, ElementInput]:
+def _cut(stepper: Stepper, trajectory: Trajectory, number: int, length: int) -> tuple[Array, ElementInput, Array]:
     """Cut motions into a number of segments of so many steps, as `cut_into_segments` does.
 
     Returns
@@ -96,17 +97,21 @@ def _cut(stepper: Stepper, trajectory: Trajectory, number: int, length: int) -> 
         {x, u, 1}, shape (step + 1, kind, place, state + row + 1).
     given
         Input of the forces at each step, as of the step that ends there; at the first one without any increment.
+    surplus
+        As in `Trajectory`, shape (step + 1, kind, place, row).
     """
     steps, slots = steps_of_segments(number, length), stepper.slots
-    states, forces = (cut_into_segments(part, steps, slots) for part in (trajectory.states, trajectory.forces))
+    states, forces, surplus = (
+        cut_into_segments(part, steps, slots) for part in (trajectory.states, trajectory.forces, trajectory.surplus)
+    )
     motion = np.concatenate([states, forces, np.ones((*states.shape[:-1], 1))], axis=-1)
     travel, rate = np.split(motion @ np.swapaxes(stepper.inputs, 1, 2), 2, axis=-1)
     memories = cut_into_segments(trajectory.memories, np.maximum(steps - 1, steps[:1]), slots)
-    return motion, ElementInput(travel, rate, np.diff(travel, axis=0, prepend=travel[:1]), memories)
+    return motion, ElementInput(travel, rate, np.diff(travel, axis=0, prepend=travel[:1]), memories), surplus
 
 
 def _differentiate_segments(
-    stepper: Stepper, motion: Array, given: ElementInput, outputs: Array, every: int
+    stepper: Stepper, motion: Array, given: ElementInput, surplus: Array, outputs: Array, every: int
 ) -> tuple[Array, Array]:
     """Differentiate by the state and the memories at the start of each segment, and by the parameters.
 
@@ -114,7 +119,7 @@ def _differentiate_segments(
     ----------
     stepper
         What stepped.
-    motion, given
+    motion, given, surplus
         From `_cut`.
     outputs
         Linear functions of {x, u}, shape (kind, output, state + row).
@@ -128,34 +133,27 @@ def _differentiate_segments(
     ends
         State and memories at the end, shape (kind, place, start, start + parameter).
     """
-    forces, found = stepper.forces, stepper.forces.evaluate(stepper.parameters, given)
-    length, (kinds, places, size) = len(motion) - 1, motion.shape[1:]
+    forces, slopes = stepper.forces, _force_slopes(stepper, given)
+    steps, (kinds, places, size) = len(motion) - 1, motion.shape[1:]
     rows, own = forces.number, forces.memory_rows
     state, memories = size - 1 - rows, len(own)
     start = state + memories
     unknowns = start + len(stepper.values)
     geometry, driving = _driven(stepper.input_slopes, start), _driven(stepper.step_slopes, start)
-    # Slopes of the forces and memories, ready to multiply changes (kind, row, place, unknown).
-    by_rate = _for_changes(found.by_rate)
-    by_memory, by_increment, kept = map(_for_changes, (found.by_memory, found.memory_by_travel, found.memory_by_memory))
-    by_increment[0] = 0.0
-    by_travel = _for_changes(found.by_travel)
-    by_travel[:, :, own] += by_memory * by_increment
     by_parameter = start + forces.of_laws
-    of_forces, of_memories = (np.swapaxes(part, 2, 3) for part in forces.differentiate(stepper.values, given))
 
     def multiply(matrices: Array, changes: Array) -> Array:
-        product = matrices @ changes.reshape(kinds, changes.shape[1], -1)
+        product = matrices @ changes.reshape(kinds, changes.shape[1], places * unknowns)
         return product.reshape(kinds, -1, places, unknowns)
 
     def force_changes(k: int, inputs: Array, memory: Array, travel: Array, inverse: Array) -> tuple[Array, Array]:
         """Return changes of the forces, and of memories less those by the change of the travel over the step."""
-        memory = kept[k] * memory - by_increment[k] * travel
-        memory[..., by_parameter] += of_memories[k]
-        right = by_travel[k] * inputs[:, :rows]
-        right += by_rate[k] * inputs[:, rows:]
-        right[..., by_parameter] += of_forces[k]
-        right[:, own] += by_memory[k] * memory
+        memory = slopes.kept[k] * memory - slopes.by_increment[k] * travel
+        memory[..., by_parameter] += slopes.of_memories[k]
+        right = slopes.by_travel[k] * inputs[:, :rows]
+        right += slopes.by_rate[k] * inputs[:, rows:]
+        right[..., by_parameter] += slopes.of_forces[k]
+        right[:, own] += slopes.by_memory[k] * memory
         return np.swapaxes(inverse @ np.swapaxes(right, 1, 2), 1, 2), memory
 
     # Changes of state and forces, and of memories, by row, place and unknown.
@@ -165,25 +163,149 @@ def _differentiate_segments(
         (changes[:, i] if i < state else memory[:, i - state])[..., i] = 1.0
     inputs = multiply(stepper.by_state, changes[:, :state])
     _add_driven(inputs, *geometry, motion[0])
-    inverse = _inverses(stepper.directly_by_force, by_travel[:1], by_rate[:1])[0]
+    inverse = _inverses(stepper.directly_by_force, slopes.by_travel[:1], slopes.by_rate[:1])[0]
     changes[:, state:], memory = force_changes(0, inputs, memory, inputs[:, own], inverse)
-    travel = inputs[:, own] + multiply(stepper.directly_by_force[:, own], changes[:, state:])
-    inverses = _inverses(stepper.input_by_force, by_travel, by_rate)
-    readings = np.empty((length // every, kinds, outputs.shape[1], places, unknowns))
-    for k in range(length):
+    inputs += multiply(stepper.directly_by_force, changes[:, state:])
+    inverses = _inverses(stepper.input_by_force, slopes.by_travel, slopes.by_rate)
+    readings = np.empty((steps // every, kinds, outputs.shape[1], places, unknowns))
+    for k in range(steps):
         if k % every == 0:
             readings[k // every] = multiply(outputs, changes)
         ends = multiply(stepper.transition, changes)
         here, there = motion[k], motion[k + 1]
-        _add_driven(ends, *driving, np.concatenate([here[..., :-1], there[..., state:]], axis=-1))
-        inputs = multiply(stepper.by_state, ends)
+        pushed = there[..., state:].copy()
+        pushed[..., :-1] += surplus[k + 1]
+        _add_driven(ends, *driving, np.concatenate([here[..., :-1], pushed], axis=-1))
+        at_start, inputs = inputs, multiply(stepper.by_state, ends)
         _add_driven(inputs, *geometry, there)
-        forced, memory = force_changes(k + 1, inputs, memory, travel, inverses[k + 1])
-        changes[:, :state] = ends + multiply(stepper.by_force, forced)
+        forced, memory = force_changes(k + 1, inputs, memory, at_start[:, own], inverses[k + 1])
+        inputs += multiply(stepper.input_by_force, forced)
+        pushing = forced
+        if slopes.surplus is not None:
+            further = slopes.surplus.changes(k, at_start, inputs, by_parameter)
+            # A surplus moves the end of its step a little. What else follows from that is of second order, and left out.
+            moved = multiply(stepper.input_by_surplus, further)
+            forced += slopes.by_rate[k + 1] * moved[:, rows:]
+            inputs += moved
+            pushing = forced + further
+        changes[:, :state] = ends + multiply(stepper.by_force, pushing)
         changes[:, state:] = forced
-        travel = inputs[:, own] + multiply(stepper.input_by_force[:, own], forced)
-        memory += by_increment[k + 1] * travel
+        memory += slopes.by_increment[k + 1] * inputs[:, own]
     return readings, np.swapaxes(np.concatenate([changes[:, :state], memory], axis=1), 1, 2)
+
+
+class _SurplusSlopes(NamedTuple):
+    """Derivatives of the surplus of each step.
+
+    Attributes
+    ----------
+    by_start, by_end
+        By travels and rates of all rows at both ends, ready to multiply changes, shape (step, kind, 2 row, place, 1).
+    by_parameter
+        By the parameters of the laws, shape (step, kind, row, place, of law).
+    """
+
+    by_start: Array
+    by_end: Array
+    by_parameter: Array
+
+    def changes(self, k: int, at_start: Array, at_end: Array, by_parameter: Index) -> Array:
+        """Return changes of the surplus of a step by those of travels and rates at its ends, and by the parameters.
+
+        Parameters
+        ----------
+        k
+            The step.
+        at_start, at_end
+            Changes of travels and rates, shape (kind, 2 row, place, unknown).
+        by_parameter
+            Positions of the parameters of the laws among the unknowns.
+        """
+        both = self.by_start[k] * at_start + self.by_end[k] * at_end
+        found: Array = np.add(*np.split(both, 2, axis=1))
+        found[..., by_parameter] += self.by_parameter[k]
+        return found
+
+
+class _ForceSlopes(NamedTuple):
+    """Slopes of forces, memories and surplus at each step, ready to multiply changes (kind, row, place, unknown).
+
+    Attributes
+    ----------
+    by_travel, by_rate, by_memory
+        Of the forces; by the travel with the memory that follows it.
+    by_increment, kept
+        Of the memories, by the increment of the travel and by the memory at the start.
+    of_forces, of_memories
+        By the parameters of the laws, shapes (step + 1, kind, row, place, of law) and (step + 1, kind, memory, place, of law).
+    surplus
+        None where forces have none.
+    """
+
+    by_travel: Array
+    by_rate: Array
+    by_memory: Array
+    by_increment: Array
+    kept: Array
+    of_forces: Array
+    of_memories: Array
+    surplus: _SurplusSlopes | None
+
+
+def _force_slopes(stepper: Stepper, given: ElementInput) -> _ForceSlopes:
+    """Evaluate the slopes of the forces at inputs from `_cut`."""
+    forces, found = stepper.forces, stepper.forces.evaluate(stepper.parameters, given)
+    by_memory, by_increment, kept = map(_for_changes, (found.by_memory, found.memory_by_travel, found.memory_by_memory))
+    by_increment[0] = 0.0
+    by_travel = _for_changes(found.by_travel)
+    by_travel[:, :, forces.memory_rows] += by_memory * by_increment
+    of_forces, of_memories = forces.differentiate(stepper.values, given)
+    surplus = _surplus_slopes(stepper, found, given, of_forces) if stepper.has_surplus else None
+    by_rate, of_forces, of_memories = (
+        _for_changes(found.by_rate),
+        np.swapaxes(of_forces, 2, 3),
+        np.swapaxes(of_memories, 2, 3),
+    )
+    return _ForceSlopes(by_travel, by_rate, by_memory, by_increment, kept, of_forces, of_memories, surplus)
+
+
+def _surplus_slopes(stepper: Stepper, found: ElementForce, given: ElementInput, of_forces: Array) -> _SurplusSlopes:
+    """Differentiate the surplus of each step.
+
+    Parameters
+    ----------
+    stepper
+        What stepped.
+    found
+        Forces at each step, with their slopes.
+    given
+        From `_cut`.
+    of_forces
+        Derivatives of the forces by the parameters of the laws, shape (step + 1, kind, place, row, of law).
+
+    Returns
+    -------
+    _SurplusSlopes
+    """
+    kinks, length = stepper.kinks, stepper.lengths[:, None, None]
+    inputs = np.concatenate([given.travel, given.rate], axis=-1)
+    rows = given.travel.shape[-1]
+    by_rate, by_travel = (part[1:] + part[:-1] for part in (found.by_rate, found.by_travel))
+    by_travel = by_travel * (length / 12.0)
+    by_start = np.concatenate([-by_rate / length, by_travel - 0.5 * by_rate], axis=-1)
+    by_end = np.concatenate([by_rate / length, -by_travel - 0.5 * by_rate], axis=-1)
+    # Of the slopes, their change by the parameters times what means of travels and rates are beyond those of both ends.
+    start, end = inputs[:-1], inputs[1:]
+    change = end - start
+    beyond = end.copy()
+    beyond[..., :rows] -= (length / 12.0) * change[..., rows:]
+    beyond[..., rows:] += change[..., :rows] / length - start[..., rows:] - 0.5 * change[..., rows:]
+    straight = ElementInput(beyond[..., :rows], beyond[..., rows:], given.increment[1:], given.memory[1:])
+    by_parameter = 2.0 * (stepper.forces.differentiate(stepper.values, straight)[0] - of_forces[1:])
+    # Where a kink lies between both, their difference is not that of one slope.
+    by_parameter[kinks.lie_between(end, beyond)] = 0.0
+    kinks.add_slopes(start, end, by_start, by_end, by_parameter)
+    return _SurplusSlopes(_for_changes(by_start), _for_changes(by_end), np.swapaxes(by_parameter, 2, 3))
 
 
 def _inverses(by_force: Array, by_travel: Array, by_rate: Array) -> Array:

@@ -14,7 +14,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.vehicle.force_laws import ElementInput
+from sprung.vehicle.force_laws import ElementForce, ElementInput
+from sprung.vehicle.kinks import KinkForces
 from sprung.vehicle.nonlinear import NonlinearForces, NonlinearModel
 
 Array = NDArray[np.float64]
@@ -25,6 +26,9 @@ _MOST_EVALUATIONS = 12
 
 _SOLVED = 1e-7
 """Difference of forces from those that they were evaluated with, as a part of the largest, that is none."""
+
+_OWN_EFFECT = 0.1
+"""Effect of a surplus on forces and on itself, as a part of it, at the most: c h/m of a damper and the mass behind it."""
 
 
 class Trajectory(NamedTuple):
@@ -38,11 +42,15 @@ class Trajectory(NamedTuple):
         Of the rows of the nonlinear elements, N, shape (step + 1, drop, row).
     memories
         Dimensionless, shape (step + 1, drop, memory).
+    surplus
+        Twice what the mean force over each step is above that of a straight run between its ends, N, shape
+        (step + 1, drop, row). It moves the vehicle like a larger force at the end of the step, but is not read.
     """
 
     states: Array
     forces: Array
     memories: Array
+    surplus: Array
 
 
 class StepDrive(NamedTuple):
@@ -76,6 +84,8 @@ class Stepper:
     inputs, input_slopes
         `NonlinearModel.element_inputs` likewise, shapes (kind, 2 row, state + row + 1) and
         (kind, parameter, 2 row, state + row + 1).
+    lengths
+        Of the steps, s, shape (kind,).
     kind
         Which of them each drop uses, shape (drop,).
     """
@@ -86,6 +96,7 @@ class Stepper:
     step_slopes: Array
     inputs: Array
     input_slopes: Array
+    lengths: Array
     kind: Index
 
     @classmethod
@@ -96,7 +107,7 @@ class Stepper:
             for model, length in zip(models, lengths, strict=True)
         ]
         steps, step_slopes, inputs, input_slopes = (np.stack(part) for part in zip(*computed, strict=True))
-        return cls(models[0].forces, values, steps, step_slopes, inputs, input_slopes, kind)
+        return cls(models[0].forces, values, steps, step_slopes, inputs, input_slopes, np.array(lengths), kind)
 
     def of_kind(self, kind: int) -> Stepper:
         """Return the steps of one load and length alone."""
@@ -107,6 +118,7 @@ class Stepper:
             step_slopes=self.step_slopes[own],
             inputs=self.inputs[own],
             input_slopes=self.input_slopes[own],
+            lengths=self.lengths[own],
             kind=np.zeros(int(np.sum(self.kind == kind)), dtype=np.int64),
         )
 
@@ -114,6 +126,16 @@ class Stepper:
     def parameters(self) -> tuple[Array, ...]:
         """Parameters of the laws, each of shape (parameter, element)."""
         return self.forces.parameters(self.values)
+
+    @cached_property
+    def kinks(self) -> KinkForces:
+        """Where the forces bend."""
+        return self.forces.kinks(self.values)
+
+    @cached_property
+    def has_surplus(self) -> bool:
+        """Whether forces have a surplus: not if all are friction, nor where rates jump with forces, as behind mounts."""
+        return not self.directly_by_force.any() and not all(law.has_memory for law, *_ in self.forces.laws)
 
     @cached_property
     def slots(self) -> Index:
@@ -154,6 +176,12 @@ class Stepper:
         found: Array = self.by_state @ self.by_force + self.directly_by_force
         return found
 
+    @cached_property
+    def input_by_surplus(self) -> Array:
+        """Travels and rates at the end of a step by the surplus there, shape (kind, 2 row, row)."""
+        found: Array = self.by_state @ self.by_force
+        return found
+
     def integrate(
         self, states: Array, memories: Array, steps: int, drive: StepDrive | None = None, similar: Array | None = None
     ) -> Trajectory:
@@ -170,7 +198,7 @@ class Stepper:
         drive
             What moves the vehicle from outside.
         similar
-            Forces of similar motions, N, shape (step + 1, drop, row): they save evaluations.
+            Forces and surplus of similar motions, N, shape (step + 1, drop, 2 row): they save evaluations.
 
         Returns
         -------
@@ -179,11 +207,13 @@ class Stepper:
         """
         slots, (kind, slot) = self.slots, self.places
         driven = None if drive is None else StepDrive(*(part[:, slots] for part in drive))
-        whole, kept = self.follow(
+        whole, kept, surplus = self.follow(
             states[slots], memories[slots], steps, driven, None if similar is None else similar[:, slots]
         )
         state = states.shape[1]
-        return Trajectory(whole[:, kind, slot, :state], whole[:, kind, slot, state:-1], kept[:, kind, slot])
+        return Trajectory(
+            whole[:, kind, slot, :state], whole[:, kind, slot, state:-1], kept[:, kind, slot], surplus[:, kind, slot]
+        )
 
     def follow(
         self,
@@ -193,7 +223,7 @@ class Stepper:
         drive: StepDrive | None = None,
         similar: Array | None = None,
         nearly: float = 0.0,
-    ) -> tuple[Array, Array]:
+    ) -> tuple[Array, Array, Array]:
         """Follow motions that are arranged by kind.
 
         Parameters
@@ -205,7 +235,7 @@ class Stepper:
         drive
             What moves the vehicle from outside, arranged likewise.
         similar
-            Forces of similar motions, N, shape (step + 1, kind, motion, row).
+            Forces and surplus of similar motions, N, shape (step + 1, kind, motion, 2 row).
         nearly
             Difference of forces from those that they were evaluated with, as a part of the largest, whose correction is not
             evaluated again: it leaves about the square of it, where no kink lies between.
@@ -216,6 +246,8 @@ class Stepper:
             {x, u, 1}, shape (step + 1, kind, motion, state + row + 1).
         memories
             Shape (step + 1, kind, motion, memory).
+        surplus
+            N, shape (step + 1, kind, motion, row).
         """
         forces, shape = self.forces, states.shape[:2]
         state, rows = states.shape[2], self.forces.number
@@ -224,12 +256,13 @@ class Stepper:
         inputs = self.by_state @ ends
         inputs[..., -1] += self.inputs[..., -1]
         predictor = _transposed(np.concatenate([ends, inputs], axis=1))
-        by_force, feedback = _transposed(self.by_force), _feedback(self.input_by_force, forces)
+        by_force = _transposed(self.by_force)
+        feedback = _Feedback.of(self.input_by_force, self.input_by_surplus)
         motions = np.ones((steps + 1, *shape, state + rows + 1))
-        kept = np.empty((steps + 1, *shape, forces.memories))
+        kept, surplus = np.empty((steps + 1, *shape, forces.memories)), np.zeros((steps + 1, *shape, rows))
         motions[0, ..., :state], kept[0] = states, memories
         # Forces are expected to go on as straight as they do, but for what those of the similar motions turn there.
-        alike = np.zeros((steps + 1, *shape, rows)) if similar is None else similar
+        alike, of_alike = np.zeros((2, *surplus.shape)) if similar is None else np.split(similar, 2, axis=-1)
         turns = np.diff(alike, 2, axis=0, prepend=alike[:1])
         predicted = np.empty((*shape, state + 2 * rows))
         with np.errstate(over="ignore", invalid="ignore"):
@@ -237,96 +270,184 @@ class Stepper:
             at_start = states @ by_state + self.inputs[:, None, :, -1]
             if drive is not None:
                 at_start += drive.inputs[0]
-            held = _feedback(self.directly_by_force, forces)
-            force, _, travel = self._solve(at_start, at_start[..., :rows], memories, alike[0], held, nearly)
-            before = motions[0, ..., state:-1] = force
+            held = _Feedback.of(self.directly_by_force, self.input_by_surplus)
+            end = self._solve(at_start, None, memories, alike[0], surplus[0], held, nearly)
+            before = motions[0, ..., state:-1] = end.force
             for k in range(steps):
                 np.matmul(motions[k], predictor, out=predicted)
                 if drive is not None:
                     predicted[..., :state] += drive.increments[k]
                     predicted[..., state:] += drive.increments[k] @ by_state + drive.inputs[k + 1]
-                expected = 2 * force - before + turns[k]
-                before, end = force, motions[k + 1]
-                force, kept[k + 1], travel = self._solve(
-                    predicted[..., state:], travel, kept[k], expected, feedback, nearly
-                )
-                end[..., state:-1] = force
-                np.add(predicted[..., :state], force @ by_force, out=end[..., :state])
-        return motions, kept
+                expected, before = 2 * end.force - before + turns[k], end.force
+                end = self._solve(predicted[..., state:], end, kept[k], expected, of_alike[k + 1], feedback, nearly)
+                motions[k + 1, ..., state:-1], kept[k + 1], surplus[k + 1] = end.force, end.memory, end.surplus
+                moving = (end.force + end.surplus if self.has_surplus else end.force) @ by_force
+                np.add(predicted[..., :state], moving, out=motions[k + 1, ..., :state])
+        return motions, kept, surplus
 
     def _solve(
         self,
         predicted: Array,
-        before: Array,
+        start: _End | None,
         memories: Array,
         force: Array,
-        feedback: tuple[Array, Array, Array, Array],
+        surplus: Array,
+        feedback: _Feedback,
         nearly: float,
-    ) -> tuple[Array, Array, Array]:
+    ) -> _End:
         """Return forces, memories and travels that depend on each other.
 
         Parameters
         ----------
         predicted
             Travels and rates without the forces, shape (kind, slot, 2 row).
-        before, memories
-            Travels and memories at the start of the step, shapes (kind, slot, row) and (kind, slot, memory).
-        force
-            The forces to begin with, shape (kind, slot, row).
+        start
+            The end of the step before; None where no step is taken.
+        memories
+            At the start of the step, shape (kind, slot, memory).
+        force, surplus
+            To begin with, shape (kind, slot, row).
         feedback
-            What the forces add to travels and rates, from `_feedback`.
+            What they add to travels and rates.
         nearly
             As for `follow`.
         """
         rows, memory_rows = force.shape[-1], self.forces.memory_rows
-        by_force, own_travel, own_rate, memory_travel = feedback
         earlier: tuple[Array, Array] | None = None
+        arguments = missing = None
         for left in reversed(range(_MOST_EVALUATIONS)):
-            end = predicted + force @ by_force
-            travel = end[..., :rows]
-            given = ElementInput(travel, end[..., rows:], travel - before, memories)
-            found = self.forces.evaluate(self.parameters, given)
+            inputs = predicted + force @ feedback.by_force
+            if start is not None and self.has_surplus:
+                inputs += surplus @ feedback.by_surplus
+            travel, rate = inputs[..., :rows], inputs[..., rows:]
+            increment = np.zeros_like(travel) if start is None else travel - start.inputs[..., :rows]
+            found = self.forces.evaluate(self.parameters, ElementInput(travel, rate, increment, memories))
             error = found.force - force
             size, largest = np.abs(error).max(initial=0.0), np.abs(found.force).max(initial=0.0)
+            if self.has_surplus:
+                arguments = self.kinks.arguments(inputs)
+                if start is not None:
+                    missing = self._surplus(start, inputs, arguments, found) - surplus
+                    size = max(size, _OWN_EFFECT * np.abs(missing).max(initial=0.0))
             if not left or not size > _SOLVED * largest:
-                break
-            # Newton's correction takes the effect of a force on its own travel and rate first, then that of all on all others.
-            slope = found.by_travel * own_travel + found.by_rate * own_rate
+                surplus = surplus if missing is None else surplus + missing
+                return _End(found.force, found.memory, inputs, surplus, arguments, found)
+            by_travel = found.by_travel
             if len(memory_rows):
-                slope[..., memory_rows] += found.by_memory * found.memory_by_travel * memory_travel
-            correction = error / (1.0 - slope)
-            moved = correction @ by_force
-            answer = found.by_travel * moved[..., :rows] + found.by_rate * moved[..., rows:]
-            if len(memory_rows):
-                answer[..., memory_rows] += found.by_memory * found.memory_by_travel * moved[..., memory_rows]
-            correction += (error + answer - correction) / (1.0 - slope)
+                by_travel = by_travel.copy()
+                by_travel[..., memory_rows] += found.by_memory * found.memory_by_travel
+            correction = _corrected(error, missing, by_travel, found.by_rate, feedback)
             if earlier is not None:
                 # Where a kink lies between, Newton's method may go back and forth: the secant does not.
                 passed = error * earlier[1] < 0
                 secant = error * (force - earlier[0]) / np.where(passed, earlier[1] - error, 1.0)
                 correction = np.where(passed, secant, correction)
             earlier, force = (force, error), force + correction
-            if size < nearly * largest:
-                moved = correction @ by_force
-                change = found.memory_by_travel * moved[..., memory_rows]
-                return force, found.memory + change, travel + moved[..., :rows]
-        return found.force, found.memory, travel
+            moved = correction @ feedback.by_force if size < nearly * largest else None
+            if missing is not None:
+                surplus = surplus + missing
+                moved = None if moved is None else moved + missing @ feedback.by_surplus
+            if moved is not None:
+                memory = found.memory + found.memory_by_travel * moved[..., memory_rows]
+                moved += inputs
+                arguments = self.kinks.arguments(moved) if self.has_surplus else None
+                return _End(force, memory, moved, surplus, arguments, found)
+        raise AssertionError("the last evaluation returns")
+
+    def _surplus(self, start: _End, inputs: Array, arguments: Array, end: ElementForce) -> Array:
+        """Return twice what the mean forces over a step are above the mean of those at both ends.
+
+        Parameters
+        ----------
+        start
+            Of the step.
+        inputs
+            Travels and rates at its end, shape (kind, slot, 2 row).
+        arguments
+            Of the kinks there, shape (kind, slot, kink).
+        end
+            Slopes of the forces there.
+
+        Returns
+        -------
+        ndarray
+            N, shape (kind, slot, row).
+        """
+        # The mean rate is the increment of the travel, and the ends of the rate tell how the travel is curved.
+        length, rows = self.lengths[:, None, None], end.force.shape[-1]
+        change = inputs - start.inputs
+        beyond = change[..., :rows] / length
+        beyond -= start.inputs[..., rows:]
+        beyond -= 0.5 * change[..., rows:]
+        surplus: Array = (start.slopes.by_rate + end.by_rate) * beyond
+        if end.by_travel.any():
+            surplus -= (start.slopes.by_travel + end.by_travel) * (change[..., rows:] * (length / 12.0))
+        if len(self.kinks.rows) and start.arguments is not None:
+            surplus[..., self.kinks.rows] += self.kinks.forces(start.arguments, arguments)
+        return surplus
 
 
-def _feedback(by_force: Array, forces: NonlinearForces) -> tuple[Array, Array, Array, Array]:
-    """Return what forces add to travels and rates, from these by the forces, shape (kind, 2 row, row).
+class _End(NamedTuple):
+    """The end of a step.
 
-    Returns
-    -------
-    by_force
-        Travels and rates by the forces, shape (kind, row, 2 row).
+    Attributes
+    ----------
+    force, memory, surplus
+        As in `Trajectory`, shape (kind, slot, row) or (kind, slot, memory).
+    inputs
+        Travels and rates, shape (kind, slot, 2 row).
+    arguments
+        Of the kinks; None where forces have no surplus.
+    slopes
+        Of the forces, where they were evaluated last.
+    """
+
+    force: Array
+    memory: Array
+    inputs: Array
+    surplus: Array
+    arguments: Array | None
+    slopes: ElementForce
+
+
+class _Feedback(NamedTuple):
+    """What forces add to travels and rates.
+
+    Attributes
+    ----------
+    by_force, by_surplus
+        Travels and rates by the forces and by their surplus, shape (kind, row, 2 row).
     own_travel, own_rate
         Those of each row by its own force, shape (kind, 1, row).
-    memory_travel
-        Travel of the row of each memory by its own force, shape (kind, 1, memory).
     """
-    travel, rate = (np.diagonal(part, axis1=1, axis2=2)[:, None] for part in np.split(by_force, 2, axis=1))
-    return _transposed(by_force), travel.copy(), rate.copy(), travel[..., forces.memory_rows]
+
+    by_force: Array
+    by_surplus: Array
+    own_travel: Array
+    own_rate: Array
+
+    @classmethod
+    def of(cls, by_force: Array, by_surplus: Array) -> _Feedback:
+        """Arrange travels and rates by the forces and by their surplus, shape (kind, 2 row, row)."""
+        own = (np.diagonal(part, axis1=1, axis2=2)[:, None].copy() for part in np.split(by_force, 2, axis=1))
+        return cls(_transposed(by_force), _transposed(by_surplus), *own)
+
+
+def _corrected(error: Array, change: Array | None, by_travel: Array, by_rate: Array, feedback: _Feedback) -> Array:
+    """Return Newton's correction of forces with an error whose surplus changes, N, shape (kind, slot, row)."""
+    rows = error.shape[-1]
+
+    def answer(moved: Array) -> Array:
+        found: Array = by_travel * moved[..., :rows] + by_rate * moved[..., rows:]
+        return found
+
+    # The effect of a force on its own travel and rate comes first, then that of all on all others.
+    own = 1.0 - (by_travel * feedback.own_travel + by_rate * feedback.own_rate)
+    if change is not None:
+        error = error + answer(change @ feedback.by_surplus)
+    correction = error / own
+    further: Array = (error + answer(correction @ feedback.by_force) - correction) / own
+    return correction + further
 
 
 def _transposed(matrices: Array) -> Array:
