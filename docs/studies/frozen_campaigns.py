@@ -164,6 +164,10 @@ WANTED: Mapping[str, str] = {
     "fault: load exchanged, one, Small car": _WEIGHED,
     "eight loggers": _ANOTHER_WAY,
     "asymmetry": _ANOTHER_WAY,
+    "from the release on": (
+        "a tyre's contact within a time step is followed: the frozen values carry the error of steps of 1 ms, and at half of "
+        "that the older program comes within 0.25 of a standard error of these"
+    ),
     "friction": (
         "decays of vehicles with nonlinear forces also begin where the fitted vehicle last touches the ground: one to three "
         "samples earlier, with standard errors 3 to 8 % smaller"

@@ -131,9 +131,9 @@ class KinkForces:
         return is_rounded
 
     def arguments(self, inputs: Array) -> Array:
-        """Return how far each kink's argument is beyond its position, from travels and rates of all rows, (..., 2 row)."""
-        beyond: Array = inputs @ self._of_inputs - self.kinks.position
-        return beyond
+        """Return how far each kink's argument is above its position, from travels and rates of all rows, (..., 2 row)."""
+        above: Array = inputs @ self._of_inputs - self.kinks.position
+        return above
 
     def lie_between(self, one: Array, other: Array) -> NDArray[np.bool_]:
         """Return in which rows a kink lies between two inputs, shape (..., 2 row): travels and rates of all rows."""

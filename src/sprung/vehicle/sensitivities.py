@@ -294,16 +294,16 @@ def _surplus_slopes(stepper: Stepper, found: ElementForce, given: ElementInput, 
     by_travel = by_travel * (length / 12.0)
     by_start = np.concatenate([-by_rate / length, by_travel - 0.5 * by_rate], axis=-1)
     by_end = np.concatenate([by_rate / length, -by_travel - 0.5 * by_rate], axis=-1)
-    # Of the slopes, their change by the parameters times what means of travels and rates are beyond those of both ends.
+    # Of the slopes, their change by the parameters times what means of travels and rates are more than those of both ends.
     start, end = inputs[:-1], inputs[1:]
     change = end - start
-    beyond = end.copy()
-    beyond[..., :rows] -= (length / 12.0) * change[..., rows:]
-    beyond[..., rows:] += change[..., :rows] / length - start[..., rows:] - 0.5 * change[..., rows:]
-    straight = ElementInput(beyond[..., :rows], beyond[..., rows:], given.increment[1:], given.memory[1:])
-    by_parameter = 2.0 * (stepper.forces.differentiate(stepper.values, straight)[0] - of_forces[1:])
+    curved = end.copy()
+    curved[..., :rows] -= (length / 12.0) * change[..., rows:]
+    curved[..., rows:] += change[..., :rows] / length - start[..., rows:] - 0.5 * change[..., rows:]
+    of_means = ElementInput(curved[..., :rows], curved[..., rows:], given.increment[1:], given.memory[1:])
+    by_parameter = 2.0 * (stepper.forces.differentiate(stepper.values, of_means)[0] - of_forces[1:])
     # Where a kink lies between both, their difference is not that of one slope.
-    by_parameter[kinks.lie_between(end, beyond)] = 0.0
+    by_parameter[kinks.lie_between(end, curved)] = 0.0
     kinks.add_slopes(start, end, by_start, by_end, by_parameter)
     return _SurplusSlopes(_for_changes(by_start), _for_changes(by_end), np.swapaxes(by_parameter, 2, 3))
 

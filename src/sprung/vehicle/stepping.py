@@ -376,10 +376,10 @@ class Stepper:
         # The mean rate is the increment of the travel, and the ends of the rate tell how the travel is curved.
         length, rows = self.lengths[:, None, None], end.force.shape[-1]
         change = inputs - start.inputs
-        beyond = change[..., :rows] / length
-        beyond -= start.inputs[..., rows:]
-        beyond -= 0.5 * change[..., rows:]
-        surplus: Array = (start.slopes.by_rate + end.by_rate) * beyond
+        curved = change[..., :rows] / length
+        curved -= start.inputs[..., rows:]
+        curved -= 0.5 * change[..., rows:]
+        surplus: Array = (start.slopes.by_rate + end.by_rate) * curved
         if end.by_travel.any():
             surplus -= (start.slopes.by_travel + end.by_travel) * (change[..., rows:] * (length / 12.0))
         if len(self.kinks.rows) and start.arguments is not None:
