@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from sprung.vehicle.force_laws import ElementForce, ElementInput
 from sprung.vehicle.segments import cut_into_segments, segments_of, steps_of_segments
-from sprung.vehicle.stepping import Stepper, Trajectory
+from sprung.vehicle.stepping import Stepper, Trajectory, mean_rate_offset
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -299,7 +299,7 @@ def _surplus_slopes(stepper: Stepper, found: ElementForce, given: ElementInput, 
     change = end - start
     curved = end.copy()
     curved[..., :rows] -= (length / 12.0) * change[..., rows:]
-    curved[..., rows:] += change[..., :rows] / length - start[..., rows:] - 0.5 * change[..., rows:]
+    curved[..., rows:] += mean_rate_offset(start, change, length)
     of_means = ElementInput(curved[..., :rows], curved[..., rows:], given.increment[1:], given.memory[1:])
     by_parameter = 2.0 * (stepper.forces.differentiate(stepper.values, of_means)[0] - of_forces[1:])
     # Where a kink lies between both, their difference is not that of one slope.

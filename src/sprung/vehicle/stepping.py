@@ -376,9 +376,7 @@ class Stepper:
         # The mean rate is the increment of the travel, and the ends of the rate tell how the travel is curved.
         length, rows = self.lengths[:, None, None], end.force.shape[-1]
         change = inputs - start.inputs
-        curved = change[..., :rows] / length
-        curved -= start.inputs[..., rows:]
-        curved -= 0.5 * change[..., rows:]
+        curved = mean_rate_offset(start.inputs, change, length)
         surplus: Array = (start.slopes.by_rate + end.by_rate) * curved
         if end.by_travel.any():
             surplus -= (start.slopes.by_travel + end.by_travel) * (change[..., rows:] * (length / 12.0))
@@ -431,6 +429,23 @@ class _Feedback(NamedTuple):
         """Arrange travels and rates by the forces and by their surplus, shape (kind, 2 row, row)."""
         own = (np.diagonal(part, axis1=1, axis2=2)[:, None].copy() for part in np.split(by_force, 2, axis=1))
         return cls(_transposed(by_force), _transposed(by_surplus), *own)
+
+
+def mean_rate_offset(start: Array, change: Array, length: Array) -> Array:
+    """Return what mean rates over steps are above the mean of those at both ends, m/s, shape (..., row).
+
+    Parameters
+    ----------
+    start, change
+        Travels and rates at the start, and their changes over the step, shape (..., 2 row).
+    length
+        Of the steps, s.
+    """
+    rows = start.shape[-1] // 2
+    offset: Array = change[..., :rows] / length
+    offset -= start[..., rows:]
+    offset -= 0.5 * change[..., rows:]
+    return offset
 
 
 def _corrected(error: Array, change: Array | None, by_travel: Array, by_rate: Array, feedback: _Feedback) -> Array:
