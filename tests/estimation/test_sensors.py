@@ -34,8 +34,8 @@ def uncertain(delay_std: float = 0.0) -> tuple[Sensor, ...]:
 
 
 def deviating(readout: Readout) -> Real:
-    """Return the car with sensors that deviate by 1 to 3 % in gain, by centimetres and by up to 2 ms."""
-    own = {"gain": 0.02, "x": -0.03, "y": 0.02, "delay": 0.002}
+    """Return the car with sensors that deviate by 1 to 3 % in gain, by centimetres, some degrees and up to 3 ms."""
+    own = {"gain": 0.02, "x": -0.03, "y": 0.02, "tilt_x": 0.05, "tilt_y": -0.04, "delay": 0.002}
     values = TABLE_1_CAR.parameters | {name: own[name.split(" ")[0]] for name in readout.names if is_of_sensor(name)}
     factors = np.linspace(0.5, 1.5, len(readout.names))
     return np.array([values[name] for name in readout.names]) * np.where(
@@ -53,7 +53,7 @@ def test_gradient_is_the_slope_of_the_residual(delay_std: float) -> None:
     readout = Readout.with_unknowns(uncertain(delay_std), NAMES)
     objective, values = ClosedFormObjective(prepare(EXACT).decays, MODELS, readout), deviating(readout)
     gradient = objective.at(values, WEIGHTS).gradient
-    assert len(gradient) == len(NAMES) + 8 + 8 + 8 * (delay_std > 0)
+    assert len(gradient) == len(NAMES) + 8 + 16 + 8 * (delay_std > 0)
     for i, (name, value) in enumerate(zip(readout.names, values, strict=True)):
         step = 1e-6 if is_of_sensor(name) else 1e-5 * value
         ends = [cost(objective, values + side * step * (np.arange(len(values)) == i)) for side in (1, -1)]

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from sprung.errors import InputError
 from sprung.simulation import default_sensors, drop_from_blocks
-from sprung.units import Quantity, si_factor
+from sprung.units import STANDARD_GRAVITY, Quantity, si_factor
 from sprung.vehicle import TABLE_1_CAR, Motion, Readout, Sensor
 
 CAR = TABLE_1_CAR
@@ -72,6 +72,23 @@ def test_derivatives_are_those_of_the_readings() -> None:
         step = 1e-4 * max(abs(values[i]), 1.0) * np.eye(len(values))[i]
         change = (readout.at(values + step) - readout.at(values - step)) / (2 * step[i])
         assert slopes[:, i] == pytest.approx(change, rel=1e-6, abs=1e-8)
+
+
+def test_a_tilted_sensor_reads_gravity_along_the_body(motion: Motion) -> None:
+    """Its direction is at the sum of its angle to the body and the body's to the vertical, of whose cosine it reads g."""
+    sensor = replace(default_sensors(CAR)[0], gain_std=0.0, position_std=0.0)
+    readout = Readout.with_unknowns([sensor], NAMES)
+    assert [name.split(" ")[0] for name in readout.names[len(NAMES) :]] == ["gain", "tilt_x", "tilt_y"]
+    upright = readout.read([*VALUES, 0.0, 0.0, 0.0], motion)[0]
+    assert upright == pytest.approx(read(sensor, motion), rel=1e-12)
+    # Nose down and left side up are positive.
+    for tilts, angles in (((0.02, 0.0), motion.displacement[1]), ((0.0, -0.03), -motion.displacement[2])):
+        leaning = sum(tilts)
+        # Less what each of the two angles takes from gravity by itself: the gain contains the one, the other is no linear term.
+        both = np.cos(leaning + angles) - np.cos(leaning) - np.cos(angles) + 1
+        change = readout.read([*VALUES, 0.0, *tilts], motion)[0] - upright
+        # Of the fourth order in angles of 0.03.
+        assert change == pytest.approx(STANDARD_GRAVITY * both, rel=1e-3, abs=1e-8)
 
 
 def test_what_does_not_go_together_is_refused() -> None:

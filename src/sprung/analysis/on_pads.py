@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from sprung.analysis.analysis import Analysis
 from sprung.errors import Fault, Problems
 from sprung.selection import choose_structure
-from sprung.vehicle import SENSOR_UNKNOWNS, sensor_unknown
+from sprung.vehicle import SensorQuantity, sensor_unknown
 
 NOT_STEPPED = "records on pads are not followed step by step"
 """Why nothing nonlinear is tried with them."""
@@ -13,6 +15,15 @@ NOT_STEPPED = "records on pads are not followed step by step"
 
 _FAR = 5.0
 """Standard uncertainties from which a sensor is not what is stated of it."""
+
+_IN_WORDS: Mapping[SensorQuantity, str] = {
+    "gain": "gain",
+    "x": "place",
+    "y": "place",
+    "tilt_x": "tilt",
+    "tilt_y": "tilt",
+    "delay": "delay",
+}
 
 
 def has_pads(run: Analysis) -> bool:
@@ -55,7 +66,7 @@ def suspect_sensor(run: Analysis) -> tuple[Fault, ...]:
     far = [
         ((found[name] - stated.value) / stated.std, sensor.channel, what)
         for sensor in run.model.structure.sensors
-        for quantity, what in zip(SENSOR_UNKNOWNS, ("gain", "place", "place", "delay"), strict=True)
+        for quantity, what in _IN_WORDS.items()
         if (name := sensor_unknown(quantity, sensor.channel)) in found
         and (stated := sensor.uncertainties.get(name)) is not None
     ]

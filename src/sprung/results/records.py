@@ -67,11 +67,12 @@ class SensorEstimate:
         Of the sensor.
     quantity
         ``gain``, relative; ``x`` and ``y``, how much further forward and left than stated a body sensor sits, m, or seems to
-        sit because it is tilted; ``delay``, s.
+        sit because it is tilted and above the axis of rotation; ``tilt_x`` and ``tilt_y``, how far its direction leans forward
+        and left, rad; ``delay``, s.
     value, std
         Difference from what is stated, and its standard uncertainty with everything that is known, in the unit.
     stated_std
-        Standard uncertainty before the identification: from the data sheet and the tape, with the effect of a tilt.
+        Standard uncertainty before the identification: from the data sheet and the tape.
     unit
         SI.
     """
@@ -79,7 +80,7 @@ class SensorEstimate:
     __pydantic_config__ = EXACT_KEYS
 
     channel: str
-    quantity: Literal["gain", "x", "y", "delay"]
+    quantity: Literal["gain", "x", "y", "tilt_x", "tilt_y", "delay"]
     value: float
     std: float
     stated_std: float

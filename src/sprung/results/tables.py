@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 
 from sprung.estimation import ForceCurve, ModeEstimate
@@ -218,7 +219,14 @@ def ratios_table(ratios: Mapping[str, Ratio]) -> Table:
     return Table(title, ("parameter", "value", "±", "unit"), tuple(rows), frozenset(("value", "±")))
 
 
-_OF_SENSORS = {"gain": ("gain, %", 100.0), "x": ("x, mm", 1e3), "y": ("y, mm", 1e3), "delay": ("delay, ms", 1e3)}
+_OF_SENSORS = {
+    "gain": ("gain, %", 100.0),
+    "x": ("x, mm", 1e3),
+    "y": ("y, mm", 1e3),
+    "tilt_x": ("tilt x, °", math.degrees(1.0)),
+    "tilt_y": ("tilt y, °", math.degrees(1.0)),
+    "delay": ("delay, ms", 1e3),
+}
 """Headers of the table of sensors, and the factor from SI to the unit there."""
 
 

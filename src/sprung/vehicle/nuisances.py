@@ -10,13 +10,15 @@ from sprung.vehicle.parameters import PARAMETERS, Parameter
 LOAD_MASS = "mass of "
 """First words of the name of a parameter that is the mass of a load, or of one of its items, known with an uncertainty."""
 
-SensorQuantity = Literal["gain", "x", "y", "delay"]
+SensorQuantity = Literal["gain", "x", "y", "tilt_x", "tilt_y", "delay"]
 """What may be uncertain of a sensor."""
 
 SENSOR_UNKNOWNS: Mapping[SensorQuantity, Parameter] = {
     "gain": Parameter("1", "part by which a channel reads too much", False, False, True),
     "x": Parameter("m", "how much further forward than stated a body sensor sits", False, False, True),
     "y": Parameter("m", "how much further left than stated a body sensor sits", False, False, True),
+    "tilt_x": Parameter("rad", "how far the direction of a body sensor leans forward", False, False, True),
+    "tilt_y": Parameter("rad", "how far the direction of a body sensor leans to the left", False, False, True),
     "delay": Parameter("s", "how much later than the other channels a channel is", False, False, True),
 }
 """Each of these as an unknown of a fit, where it has the name `sensor_unknown`."""

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from sprung.display import shown
+from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle.kinematics import Row, body_point
 from sprung.vehicle.model import Rows
 from sprung.vehicle.nuisances import SENSOR_UNKNOWNS, sensor_unknown
@@ -21,7 +22,10 @@ Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 Part = TypeVar("Part", bound=NDArray[Any])
 
-_GAIN, _X, _Y, _DELAY = range(len(SENSOR_UNKNOWNS))
+_GAIN, _X, _Y, _TILT_X, _TILT_Y, _DELAY = range(len(SENSOR_UNKNOWNS))
+
+_PLACED = (_X, _Y, _TILT_X, _TILT_Y)
+"""Unknowns by which the rows change."""
 
 _NOTHING = Row({})
 
@@ -29,11 +33,12 @@ _NOTHING = Row({})
 @shown
 @dataclass(frozen=True, eq=False)
 class Readout:
-    """Rows of what several sensors read of a motion, their gains, places and delays being unknown or exact.
+    """Rows of what several sensors read of a motion, their gains, places, tilts and delays being unknown or exact.
 
-    A channel reads (1 + γ) (S + x S_x + y S_y) Z(t - δ), with the row S of its place as stated, a gain γ, what it sits further
-    forward and left, x and y, and a delay δ. Z holds, one below the other, those of X, Ẋ and Ẍ that any of the sensors reads.
-    None of them changes the motion: no derivative of it is needed.
+    A channel reads (1 + γ) (S + x S_x + y S_y + τ_x G_x + τ_y G_y) Z(t - δ), with the row S of its place as stated, a gain γ,
+    what it sits further forward and left, x and y, what its direction leans forward and left, τ_x and τ_y, and a delay δ. G_x
+    and G_y are gravity along the body, g times by how much the body rises per metre forward or left. Z holds, one below the
+    other, those of X, Ẋ and Ẍ that any of the sensors reads. None of them changes the motion: no derivative of it is needed.
 
     Attributes
     ----------
@@ -44,16 +49,18 @@ class Readout:
     orders
         Derivatives of X by time of which Z consists: 0, 1 or 2, ascending.
     positions
-        Position of each sensor's gain, x, y and delay among the parameters, -1 for what is exact; shape (channel, 4).
-    places
-        Changes of the rows by a metre forward, and by a metre to the left, of each sensor; 2 channel rows.
+        Position of each unknown of each sensor among the parameters, in the order of `SENSOR_UNKNOWNS`, -1 for what is exact;
+        shape (channel, 6).
+    placed
+        Changes of the rows by a metre forward and to the left, and by a radian forward and to the left, of each sensor;
+        4 channel rows.
     """
 
     names: tuple[str, ...]
     rows: Rows
     orders: tuple[int, ...]
     positions: Index
-    places: Rows
+    placed: Rows
 
     @classmethod
     def of(cls, sensors: Sequence[Sensor], names: Sequence[str], wheelbase: float = 0.0) -> Readout:
@@ -80,11 +87,14 @@ class Readout:
         ).reshape(-1, len(SENSOR_UNKNOWNS))
         own = names[: len(names) - int(np.sum(positions >= 0))]
         read = [sensor.rows(own, wheelbase) for sensor in sensors]
-        orders = tuple(sorted({order for one in read for order in one})) or (2,)
+        leaning = bool(np.any(positions[:, [_TILT_X, _TILT_Y]] >= 0))
+        orders = tuple(sorted({order for one in read for order in one} | ({0} if leaning else set()))) or (2,)
         origin, *moved = (body_point(*place) for place in ((0.0, 0.0), (1.0, 0.0), (0.0, 1.0)))
         moves = [row - origin for row in moved]
-        placed = [dict.fromkeys(one, move) for move in moves for one in read]
-        return cls(tuple(names), _stacked(read, orders, own), orders, positions, _stacked(placed, orders, own))
+        places = _stacked([dict.fromkeys(one, move) for move in moves for one in read], orders, own)
+        tilts = _stacked([{0: move} for move in moves for _ in read], orders, own)
+        placed = Rows(np.concatenate([places.affine, STANDARD_GRAVITY * tilts.affine]))
+        return cls(tuple(names), _stacked(read, orders, own), orders, positions, placed)
 
     @classmethod
     def with_unknowns(cls, sensors: Sequence[Sensor], names: Sequence[str], wheelbase: float = 0.0) -> Readout:
@@ -112,7 +122,7 @@ class Readout:
 
     @cached_property
     def _has(self) -> NDArray[np.bool_]:
-        """Of which of gain, x, y and delay any sensor has an unknown, shape (4,)."""
+        """Which unknowns any sensor has, shape (6,)."""
         return np.asarray((self.positions >= 0).any(axis=0))
 
     @property
@@ -143,7 +153,7 @@ class Readout:
         return tuple((channel, position) for channel, position in enumerate(positions) if position >= 0)
 
     def _unknown(self, kind: int, values: Array) -> Array:
-        """Return gain, x, y or delay of every channel, 0 where it is exact; shape (..., channel)."""
+        """Return one kind of unknown of every channel, 0 where it is exact; shape (..., channel)."""
         positions = self.positions[:, kind]
         return np.where(positions >= 0, values[..., positions], 0.0)
 
@@ -152,18 +162,15 @@ class Readout:
         return self._unknown(_DELAY, values)
 
     @cached_property
-    def _angles(self) -> Mapping[int, Array]:
-        """Changes of the rows by a metre forward and a metre to the left, for x and y where any sensor has them as unknowns.
-
-        Each of shape (channel, column).
-        """
-        changes = zip((_X, _Y), self.place_slopes, strict=True)
-        return {kind: change for kind, change in changes if self._has[kind]}
+    def _changes(self) -> Mapping[int, Array]:
+        """Changes of the rows by places and tilts that any sensor has as unknowns, each of shape (channel, column)."""
+        changes = np.split(self.placed.affine[:, :, 0], len(_PLACED))
+        return {kind: change for kind, change in zip(_PLACED, changes, strict=True) if self._has[kind]}
 
     def _placed(self, values: Array) -> Array:
-        """Return the rows with their places, without gains."""
+        """Return the rows with their places and tilts, without gains."""
         rows = self.rows.at(values)
-        for kind, row in self._angles.items():
+        for kind, row in self._changes.items():
             rows = rows + self._unknown(kind, values)[..., None] * row
         return rows
 
@@ -195,7 +202,7 @@ class Readout:
         if self._has[_GAIN]:
             which = np.flatnonzero(self.positions[:, _GAIN] >= 0)
             slopes[which, self.positions[which, _GAIN]] = self._placed(values)[which]
-        for kind, row in self._angles.items():
+        for kind, row in self._changes.items():
             which = np.flatnonzero(self.positions[:, kind] >= 0)
             slopes[which, self.positions[which, kind]] = gains[which, None] * row[which]
         return slopes
@@ -242,7 +249,7 @@ class Readout:
     @cached_property
     def place_slopes(self) -> Array:
         """Change of each row by a metre forward, and by a metre to the left; shape (2, channel, column of Z)."""
-        return np.array(np.split(self.places.affine[:, :, 0], 2))
+        return np.array(np.split(self.placed.affine[:, :, 0], len(_PLACED))[:2])
 
     def of_accelerations(self, rows: Array) -> Array:
         """Return the part of rows that multiplies Ẍ, of shape (..., channel, column of Z); (..., channel, coordinate)."""

@@ -38,9 +38,6 @@ _TAIL = 2.4
 """Standard deviation, in means, of a normal distribution of which four are as rare as they are of τ²/2 (exponential): as rare
 as what lies 9.4 means beyond the mean."""
 
-_PENDULUM = 0.16
-"""m: g/ω² at 1.25 Hz, the natural frequency of usual bodies; see `Sensor.uncertainties`."""
-
 
 @checked_record
 class Sensor:
@@ -210,22 +207,23 @@ class Sensor:
 
     @property
     def uncertainties(self) -> dict[str, KnownValue]:
-        """What is known of its gain, place and delay, by the names under which they are unknowns of a fit, SI.
+        """What is known of its gain, place, tilt and delay, by the names under which they are unknowns of a fit, SI.
 
         A gain is the part by which it reads too much; a place is how much further forward or left it sits, on the body.
 
         A tilt τ lowers the gain by 1 - cos τ: with a standard uncertainty s about both horizontal axes by s² on average; the
         standard deviation is s² too, and larger deviations are more frequent than normal ones. On the body it mixes in gravity
-        times the angle of the body, which at an angular frequency ω is g/ω² times the angular acceleration: as if the sensor
-        sat τ g/ω² elsewhere. That is 0.16 m at 1.25 Hz, and nothing at wheel hop. What a height adds is for `at_height_above`.
+        times the angle of the body; what a height adds is for `at_height_above`.
         """
         tilt = 0.0 if self.pad else math.radians(self.tilt_std)
-        pendulum = _PENDULUM if self.reads_gravity else 0.0
-        place = math.hypot(self.position_std, tilt * pendulum) if self.position is not None else 0.0
+        place = self.position_std if self.position is not None else 0.0
+        leans = tilt if self.position is not None and self.reads_gravity else 0.0
         known: dict[SensorQuantity, KnownValue] = {
             "gain": KnownValue(-(tilt**2), math.hypot(self.gain_std, _TAIL * tilt**2)),
             "x": KnownValue(0.0, place),
             "y": KnownValue(0.0, place),
+            "tilt_x": KnownValue(0.0, leans),
+            "tilt_y": KnownValue(0.0, leans),
             "delay": KnownValue(0.0, self.delay_std),
         }
         return {
@@ -234,7 +232,7 @@ class Sensor:
 
 
 def uncertainties_of(sensors: Iterable[Sensor]) -> dict[str, KnownValue]:
-    """Return what is known of gain, place and delay of several sensors, SI, by the names of these unknowns of a fit.
+    """Return what is known of gain, place, tilt and delay of several sensors, SI, by the names of these unknowns of a fit.
 
     Parameters
     ----------
