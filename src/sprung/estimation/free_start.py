@@ -29,6 +29,10 @@ _CLEAR = 60.0
 _TWICE_AS_FAR = 8.0
 """By which the excess grows where it is twice as far from the end of a force that ends like a half sine: F² adds up as t³."""
 
+_MARGIN = 1.5
+"""Samples between a clear force and its end, over those from where it is twice as far to where it is clear: 1 is the mean, and
+what is left of a force a sample before its end passes for a rubber mount."""
+
 _MODEL_ERROR = 0.2
 """Variance beyond the sensors' noise at rest, as a part of it, from which the model has errors: 0.14 is the standard error of
 the variance of 100 samples."""
@@ -92,7 +96,7 @@ def find_free_start(fit: FitResult, drop: int) -> int:
         return earliest
     near = _crossing(costs, detected, every, lowest + clear)
     further = _crossing(costs, far, every, lowest + _TWICE_AS_FAR * clear) if far != earliest else earliest
-    return min(near + max(near - further, 1), shown)
+    return min(near + max(round(_MARGIN * (near - further)), 1), shown)
 
 
 def _crossing(costs: _Costs, earlier: int, every: int, level: float) -> int:
