@@ -9,26 +9,20 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from sprung.estimation import fit_linear
 from sprung.progress import Step
 from sprung.selection.contact import from_contact
-from sprung.selection.error_budget import MISFIT_LEFT, MISFIT_LEFT_AT_FIRST
+from sprung.selection.error_budget import MISFIT_LEFT
 from sprung.selection.linear_terms import BENDING, TWIST
 from sprung.selection.ordinary_vehicle import (
     ITERATIONS,
     fit_from_ordinary_vehicle,
-    held_sizes,
-    ordinary_vehicle,
-    usual_sizes,
+    fit_usual_terms,
 )
 from sprung.selection.search import ModelSearch
 from sprung.selection.starts import start_variants
 from sprung.selection.stepwise import select_further_terms
 from sprung.selection.structure import ModelStructure
 from sprung.selection.terms import TERMS
-
-_FIRST_ITERATIONS = 8
-"""After which the fit of the ordinary vehicle has to have explained some of the misfit."""
 
 
 def select_flexible_body(search: ModelSearch) -> ModelSearch:
@@ -86,31 +80,12 @@ def select_from_ordinary_vehicle(search: ModelSearch, plain: ModelStructure) -> 
     if not terms:
         return search
     search.progress(Step("fitting an ordinary vehicle with every usual term"))
-    found = _fit_ordinary(search, plain.with_terms((*plain.terms, *terms)))
+    found = fit_usual_terms(search, plain.with_terms((*plain.terms, *terms)))
     if found is None or search.leaves_misfit(found.fit, MISFIT_LEFT):
         against = "together they do not explain what the model so far leaves"
         return search.recorded(dict.fromkeys(terms, 0.0), True, False, against)
     found = _without_unneeded(found)
     return select_further_terms(from_contact(found, on_the_way=True))
-
-
-def _fit_ordinary(search: ModelSearch, rich: ModelStructure) -> ModelSearch | None:
-    """Fit the ordinary vehicle to the beginnings of the decays; None where it leaves too much of the misfit at first.
-
-    Usual values stay as priors of the terms alone. What no term would need to gain does not matter yet.
-    """
-    values, usual = ordinary_vehicle(rich)
-    at_start = fit_linear(
-        search.decays, rich.linear_models, rich.sensors, rich.known, start=values, usual=usual, most=0
-    )
-    held = replace(rich, usual=usual | held_sizes(rich, values))
-    found = replace(search, structure=held, fit=at_start)
-    found = found.refit(held, _FIRST_ITERATIONS, beginning_only=True, enough=search.required_of_switch)
-    if search.leaves_misfit(found.fit, MISFIT_LEFT_AT_FIRST):
-        return None
-    if not found.fit.converged:
-        found = found.refit(held, ITERATIONS, beginning_only=True, enough=search.required_of_switch)
-    return replace(found, structure=replace(rich, usual=usual_sizes(rich, values)))
 
 
 def _without_unneeded(search: ModelSearch) -> ModelSearch:

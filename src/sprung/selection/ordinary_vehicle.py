@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from sprung.estimation import NEAR, UsualValue, VehicleSize, fit_linear, usual_vehicle
+from sprung.selection.error_budget import MISFIT_LEFT_AT_FIRST
 from sprung.selection.search import ModelSearch
 from sprung.selection.starts import start_values
 from sprung.selection.structure import ModelStructure
@@ -36,6 +37,9 @@ _FAR = 4.0
 
 ITERATIONS = 22
 """Of a fit from an ordinary vehicle, at the most."""
+
+_FIRST_ITERATIONS = 8
+"""After which the fit of an ordinary vehicle has to have explained some of the misfit."""
 
 _HELD = 1.1
 """Factor within which a parameter is held that means little where its term is small."""
@@ -161,3 +165,33 @@ def fit_from_ordinary_vehicle(search: ModelSearch, structure: ModelStructure) ->
     held = fit_linear(search.decays, models, exact, {**first, **known}, start=values, enough=NEAR, most=ITERATIONS)
     fit = fit_linear(search.decays, models, sensors, known, start=held.parameters, enough=NEAR, most=ITERATIONS)
     return replace(search, structure=structure, fit=fit.after(search.fit))
+
+
+def fit_usual_terms(search: ModelSearch, rich: ModelStructure) -> ModelSearch | None:
+    """Fit a structure from an ordinary vehicle whose terms have their usual sizes, to the beginnings of the decays.
+
+    Parameters
+    ----------
+    search
+        The present model and its fit.
+    rich
+        What is fitted.
+
+    Returns
+    -------
+    ModelSearch or None
+        With usual values as priors of the terms. None where it leaves too much of the misfit at first.
+    """
+    values, usual = ordinary_vehicle(rich)
+    at_start = fit_linear(
+        search.decays, rich.linear_models, rich.sensors, rich.known, start=values, usual=usual, most=0
+    )
+    held = replace(rich, usual=usual | held_sizes(rich, values))
+    found = replace(search, structure=held, fit=at_start)
+    # What no term would need to gain does not matter yet.
+    found = found.refit(held, _FIRST_ITERATIONS, beginning_only=True, enough=search.required_of_switch)
+    if search.leaves_misfit(found.fit, MISFIT_LEFT_AT_FIRST):
+        return None
+    if not found.fit.converged:
+        found = found.refit(held, ITERATIONS, beginning_only=True, enough=search.required_of_switch)
+    return replace(found, structure=replace(rich, usual=usual_sizes(rich, values)))

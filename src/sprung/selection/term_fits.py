@@ -14,7 +14,13 @@ from sprung.estimation import NEAR, FitResult, fit_linear
 from sprung.progress import Step
 from sprung.selection.error_budget import MISFIT_LEFT, MISFIT_LEFT_AT_FIRST, MISFIT_LEFT_BESIDE
 from sprung.selection.linear_terms import ENGINE
-from sprung.selection.ordinary_vehicle import ITERATIONS, fit_from_ordinary_vehicle, is_ordinary, ordinary_vehicle
+from sprung.selection.ordinary_vehicle import (
+    ITERATIONS,
+    fit_from_ordinary_vehicle,
+    fit_usual_terms,
+    is_ordinary,
+    ordinary_vehicle,
+)
 from sprung.selection.scoring import WORTH_A_FIT, with_best_start
 from sprung.selection.search import ModelSearch
 from sprung.selection.starts import fit_structure, has_positive_masses, start_values
@@ -68,14 +74,16 @@ def fit_forced_terms(search: ModelSearch, requested: ModelStructure) -> ModelSea
     Notes
     -----
     Where a linear vehicle does not explain the records, its fit has shifted mass between body and wheels, and a fit with
-    nonlinear terms does not come back from there. It therefore begins also from one whose wheels have kept their masses.
+    nonlinear terms does not come back from there. It therefore begins also from an ordinary vehicle, at first without friction,
+    which a fit of everything at once loses.
     """
     larger = search.structure.with_terms(requested.terms)
-    begins = [search, _begin_with_held_wheels(search, larger)] if search.has_model_error else [search]
-    if len(begins) > 1:
-        begins = [one.refit(larger, _FIRST_ITERATIONS, beginning_only=True) for one in begins]
-    best = max(begins, key=lambda begin: begin.fit.loglikelihood)
-    return select_gravity_leakage(best.refit(larger))
+    if search.has_model_error:
+        first = tuple(term for term in larger.terms if not TERMS[term].resembles_others)
+        begins = [search, fit_usual_terms(search, larger.with_terms(first))]
+        tried = [one.refit(larger, _FIRST_ITERATIONS, beginning_only=True) for one in begins if one is not None]
+        search = max(tried, key=lambda begin: begin.fit.loglikelihood)
+    return select_gravity_leakage(search.refit(larger))
 
 
 def _begin_with_held_wheels(search: ModelSearch, larger: ModelStructure) -> ModelSearch:
