@@ -174,6 +174,16 @@ def test_a_fit_far_from_the_recordings_does_not_shift_mass_to_the_wheels() -> No
 
 
 @pytest.mark.long
+def test_friction_is_not_lost_on_the_way_from_an_ordinary_vehicle() -> None:
+    """A fit of everything at once lost it: a low-pass, rubber and tyre damping made up for it, at up to 4.9 standard errors."""
+    ((campaign, truth),) = record([draw_test("usual", 5)])
+    outcome = examine(campaign, truth, 600.0)
+    assert (outcome.verdict, outcome.faults) == ("accept", ())
+    assert {"friction", "mount-damping"} <= {*outcome.model}
+    assert outcome.worst_scaled[0] < 4
+
+
+@pytest.mark.long
 def test_a_body_that_turns_far_is_no_brake() -> None:
     """Its loaded roll drops differ from all others to second order in the angle: they were left out as with the brake on."""
     ((campaign, truth),) = record([draw_test("tall", 7)])

@@ -26,8 +26,7 @@ def needed_terms(search: ModelSearch) -> dict[str, float]:
     dict
         By term, what twice the log-likelihood would lose without it (Wald test), divided by the overdispersion.
     """
-    gains = {term: search.wald_gain(term) for term in search.selected if not search.veto(term)}
-    return {term: gain for term, gain in gains.items() if gain > search.required(term)}
+    return {term: search.wald_gain(term) for term in search.selected if search.needs(term)}
 
 
 def leave_out_refused(search: ModelSearch) -> ModelSearch:

@@ -240,7 +240,7 @@ LINEAR_TERMS = (
         usual=lambda own, _: usual_rubber(own),
         typical=_LOSS,
         spread=2.0,
-        negligible=0.02,
+        negligible=0.004,
         description=TermDescription(
             "damping of {0} in the mounts of the {axle} dampers",
             ((lambda p, axle: p[f"c_d{axle}"], "N s/m"),),

@@ -170,6 +170,8 @@ def fit_from_ordinary_vehicle(search: ModelSearch, structure: ModelStructure) ->
 def fit_usual_terms(search: ModelSearch, rich: ModelStructure) -> ModelSearch | None:
     """Fit a structure from an ordinary vehicle whose terms have their usual sizes, to the beginnings of the decays.
 
+    A fit of everything at once may lose friction, and what resembles it then makes up for it: it begins without friction then.
+
     Parameters
     ----------
     search
@@ -186,12 +188,28 @@ def fit_usual_terms(search: ModelSearch, rich: ModelStructure) -> ModelSearch | 
     at_start = fit_linear(
         search.decays, rich.linear_models, rich.sensors, rich.known, start=values, usual=usual, most=0
     )
-    held = replace(rich, usual=usual | held_sizes(rich, values))
-    found = replace(search, structure=held, fit=at_start)
-    # What no term would need to gain does not matter yet.
-    found = found.refit(held, _FIRST_ITERATIONS, beginning_only=True, enough=search.required_of_switch)
+    rich = replace(rich, usual=usual | held_sizes(rich, values))
+    start = replace(search, structure=rich, fit=at_start)
+    best = _fit_beginnings(search, start, rich)
+    lost = {term for term in rich.terms if TERMS[term].resembles_others and (best is None or not best.needs(term))}
+    if lost:
+        without = rich.with_terms(tuple(term for term in rich.terms if term not in lost))
+        other = _fit_beginnings(search, start, without)
+        ends = [end for end in (best, other and _refit_beginnings(search, other, rich)) if end is not None]
+        best = max(ends, key=lambda end: end.fit.loglikelihood, default=None)
+    return None if best is None else replace(best, structure=replace(rich, usual=usual_sizes(rich, values)))
+
+
+def _fit_beginnings(search: ModelSearch, start: ModelSearch, structure: ModelStructure) -> ModelSearch | None:
+    """Fit a structure from a start; None where much of the misfit is left after some steps."""
+    found = _refit_beginnings(search, start, structure, _FIRST_ITERATIONS)
     if search.leaves_misfit(found.fit, MISFIT_LEFT_AT_FIRST):
         return None
-    if not found.fit.converged:
-        found = found.refit(held, ITERATIONS, beginning_only=True, enough=search.required_of_switch)
-    return replace(found, structure=replace(rich, usual=usual_sizes(rich, values)))
+    return found if found.fit.converged else _refit_beginnings(search, found, structure)
+
+
+def _refit_beginnings(
+    search: ModelSearch, start: ModelSearch, structure: ModelStructure, most: int = ITERATIONS
+) -> ModelSearch:
+    """Fit a structure until what is left to gain is less than any term needs."""
+    return start.refit(structure, most, beginning_only=True, enough=search.required_of_switch)

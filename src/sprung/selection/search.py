@@ -311,6 +311,10 @@ class ModelSearch:
         ]
         return wald_test(self.fit, neutral) / self.overdispersion
 
+    def needs(self, term: str) -> bool:
+        """Whether nothing speaks against a term of the model, and twice the log-likelihood would lose enough without it."""
+        return not self.veto(term) and self.wald_gain(term) > self.required(term)
+
     def veto(self, term: str) -> str:
         """Reason against a term of the model, whatever it gains; empty where there is none."""
         row, parameters = TERMS[term], self.fit.parameters

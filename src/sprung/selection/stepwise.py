@@ -89,11 +89,13 @@ def select_further_terms(search: ModelSearch) -> ModelSearch:
     """
     tried: frozenset[str] = frozenset()
     for _ in range(_FURTHER_ROUNDS):
-        if not search.structure.is_nonlinear or not search.is_overdispersed:
+        if not search.structure.is_nonlinear:
             break
         before = search
         search, fitted = _try_scored(search, tried)
         tried |= {*fitted}
+        if search.structure is before.structure and not search.is_overdispersed:
+            break
         if search.structure is before.structure:
             # A low-pass resembles knees, and so does whatever else is missing: it is looked for once nothing else shows.
             search = select_low_pass(search)

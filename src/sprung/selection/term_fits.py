@@ -74,15 +74,16 @@ def fit_forced_terms(search: ModelSearch, requested: ModelStructure) -> ModelSea
     Notes
     -----
     Where a linear vehicle does not explain the records, its fit has shifted mass between body and wheels, and a fit with
-    nonlinear terms does not come back from there. It therefore begins also from an ordinary vehicle, at first without friction,
-    which a fit of everything at once loses.
+    nonlinear terms does not come back from there. It therefore begins also from one whose wheels have kept their masses, and
+    from an ordinary vehicle.
     """
     larger = search.structure.with_terms(requested.terms)
     if search.has_model_error:
-        first = tuple(term for term in larger.terms if not TERMS[term].resembles_others)
-        begins = [search, fit_usual_terms(search, larger.with_terms(first))]
-        tried = [one.refit(larger, _FIRST_ITERATIONS, beginning_only=True) for one in begins if one is not None]
-        search = max(tried, key=lambda begin: begin.fit.loglikelihood)
+        begins = (search, _begin_with_held_wheels(search, larger))
+        tried = [begin.refit(larger, _FIRST_ITERATIONS, beginning_only=True) for begin in begins]
+        ordinary = fit_usual_terms(search, larger)
+        ends = tried if ordinary is None else [*tried, ordinary]
+        search = max(ends, key=lambda end: end.fit.loglikelihood)
     return select_gravity_leakage(search.refit(larger))
 
 
