@@ -24,6 +24,7 @@ _IN_WORDS: Mapping[SensorQuantity, str] = {
     "tilt_y": "tilt",
     "delay": "delay",
 }
+"""Unknowns of a sensor in words."""
 
 
 def has_pads(run: Analysis) -> bool:

@@ -94,9 +94,9 @@ def select_further_terms(search: ModelSearch) -> ModelSearch:
         before = search
         search, fitted = _try_scored(search, tried)
         tried |= {*fitted}
-        if search.structure is before.structure and not search.is_overdispersed:
-            break
         if search.structure is before.structure:
+            if not search.is_overdispersed:
+                break
             # A low-pass resembles knees, and so does whatever else is missing: it is looked for once nothing else shows.
             search = select_low_pass(search)
         if search.structure is before.structure:
