@@ -22,6 +22,7 @@ from sprung.estimation import (
     uncertainty_of,
     wald_test,
 )
+from sprung.estimation.stepped_likelihood import TimeSteppingAt
 from sprung.estimation.time_stepping import TimeSteppingObjective
 from sprung.preprocess import FreeDecay, prepare
 from sprung.selection.structure import ModelStructure, choose_structure
@@ -300,3 +301,35 @@ def test_a_step_gains_what_is_expected_of_it_where_initial_states_are_not_at_the
     of_parameters = begun.problem.normal_equations(begun.iterate)._replace(eliminated=np.zeros((2, 0))).step()[1]
     assert of_parameters < 0.5 * expected
     assert gain == pytest.approx(expected, rel=0.3)
+
+
+def test_a_drop_whose_initial_state_loses_goes_a_part_of_the_way(
+    campaign: Campaign, decays: tuple[FreeDecay, ...], plain: ModelStructure, optimum: FitResult
+) -> None:
+    """As where friction turns round: whole steps of one drop would lead across its optimum again and again."""
+    larger = plain.with_terms(("friction",))
+    values = np.array(
+        [(optimum.parameters | {"F_f": 0.0, "F_r": 0.0, "s_f": 2e5, "s_r": 2e5})[n] for n in larger.names]
+    )
+    rows = Readout.of(campaign.sensors, larger.names)
+    states = optimum.states + 2e-5 * np.random.default_rng(1).standard_normal(optimum.states.shape)
+    objective = TimeSteppingObjective(decays, larger.nonlinear_models, rows, states, False, 0.002)
+    tried: list[np.ndarray] = []
+
+    class Bent(TimeSteppingAt):
+        """Where the second drop ends far from its prior, whatever is tried."""
+
+        def _moved_by(self, values: np.ndarray, states: np.ndarray) -> TimeSteppingAt:
+            tried.append(states)
+            moved = super()._moved_by(values, states)
+            begin = moved.stepped.begin.copy()
+            begin[1, 0] += 1e3 * objective.prior_std[0]
+            return replace(moved, stepped=replace(moved.stepped, begin=begin))
+
+    at = objective.at(values, np.full(8, 0.02**-2))
+    Bent(at.stepped, at.weights).moved(values)
+    whole, part = tried
+    np.testing.assert_array_equal(np.delete(part, 1, axis=0), np.delete(whole, 1, axis=0))
+    shares = part[1, :14] / whole[1, :14]
+    np.testing.assert_allclose(shares, shares[0], rtol=1e-9)
+    assert 0 < shares[0] < 1

@@ -187,3 +187,27 @@ def test_a_step_that_gains_far_more_than_expected_is_not_the_last() -> None:
         Scripted([5000.0, 250.0, 0.1], [5000.0, 250.0, 0.1]), 0, tolerance=17.0, damping=1e-9, most_steps=20
     )
     assert found == Maximum(2, 2, converged=True)
+
+
+class Bend(NamedTuple):
+    """Twice the log-likelihood -x² up to x = 1 and -x⁴ behind it: its quadratic model there promises what is not to be had."""
+
+    tried: list[float]
+
+    def normal_equations(self, point: Real) -> NormalEquations:
+        x = point[0]
+        gradient = -x if abs(x) < 1 else -2 * x**3
+        return NormalEquations(np.full((1, 1), 1e-3 if abs(x) > 1 else 1.0), np.full(1, gradient), np.eye(1), np.eye(1))
+
+    def trial(self, point: Real, step: Real, _damping: float) -> tuple[Real, float]:
+        before, after = (float(x**2 if abs(x) < 1 else x**4) for x in (point[0], point[0] + step[0]))
+        self.tried.append(point[0] + step[0])
+        return point + step, before - after
+
+
+def test_few_steps_are_tried_where_little_damping_changes_nothing() -> None:
+    """From a damping of 1e-9 about 40 is needed: ten rises by a factor of 8 would need as many trials."""
+    bend = Bend([])
+    found = maximise(bend, np.array([3.0]), tolerance=1e-9, damping=1e-9, most_steps=1)
+    assert abs(found.point[0]) < 3.0
+    assert len(bend.tried) <= 8

@@ -13,7 +13,7 @@ from sprung.estimation.fit_result import FitResult
 from sprung.estimation.linear_fit import NEAR, expected_nuisances
 from sprung.estimation.low_pass import LowPass
 from sprung.estimation.priors import Coordinates, PriorsAndConstraints, UsualValue
-from sprung.estimation.problem import CLOSE_BY, CONVERGED, FAR, EstimationProblem, Iterate
+from sprung.estimation.problem import CLOSE_BY, CONVERGED, EstimationProblem, Iterate
 from sprung.estimation.score_test import score_test
 from sprung.estimation.statements import readout_of, statements_of
 from sprung.estimation.time_stepping import TimeSteppingObjective
@@ -34,6 +34,9 @@ _MOST_STEPS = 100
 
 _ON_THE_WAY = 1.0
 """Expected gain in log-likelihood at which a fit to the beginnings ends that is followed by one to the whole decays."""
+
+_FAR = 0.1
+"""Damping of the first step from usual values: far from the recordings forces that are not linear lead longer steps astray."""
 
 _HORIZON = 1.0
 """s of each decay that are fitted first: the shorter, the straighter the way from a start that is far away."""
@@ -119,7 +122,7 @@ def fit_nonlinear(
     for part, tolerance, longest_step in stages:
         objective = _objective(part, models, sensors, known, states, tilting, low_pass, longest_step)
         problem = _problem(objective, known, values, usual)
-        start_damping = FAR if usual else CLOSE_BY
+        start_damping = _FAR if usual else CLOSE_BY
         if tolerance >= _ON_THE_WAY or beginning_only:
             # What is found on the way of the memories of friction is used by no one.
             found = problem.maximise(problem.priors.nearest(values), None, tolerance, start_damping, most)

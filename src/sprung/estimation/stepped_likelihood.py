@@ -21,6 +21,10 @@ _STATE_STEPS, _STATE_GAIN = 20, 1e-2
 """Gauss-Newton steps of initial states alone, at the most, and gain in twice the log-likelihood below which they end."""
 
 
+_MOSTLY = 0.8
+"""Part of the expected gain that initial states promise, from which a loss is taken for theirs."""
+
+
 @dataclass(frozen=True, eq=False)
 class TimeSteppingAt:
     """Time stepping at parameter values and noise levels.
@@ -60,18 +64,37 @@ class TimeSteppingAt:
         return replace(self, weights=weights)
 
     def moved(self, values: Real, damping: float = 0.0, /) -> TimeSteppingAt:
-        """Return the likelihood at other parameter values, with the initial states that should explain the records there."""
+        """Return the likelihood at other parameter values, with the initial states that should explain the records there.
+
+        Where friction turns round as it begins to move, a whole step of an initial state may lead across its optimum and lose
+        what it should gain: such a drop goes a part of the way, to the vertex of the parabola through what is known of it.
+        """
         information, gradient = self._normal_equations
         parameters = len(self.values)
+        change = values - self.values
         own = information[:, parameters:, parameters:]
-        response = np.einsum("dzp,p->dz", information[:, parameters:, :parameters], values - self.values)
+        following = -solve_normal_equations(own, information[:, parameters:, :parameters] @ change[:, None])[:, :, 0]
         damped = own + damping * own * np.eye(own.shape[1])
-        step = solve_normal_equations(damped, gradient[:, parameters:, None])
-        step -= solve_normal_equations(own, response[:, :, None])
-        step = step[:, :, 0]
+        step = solve_normal_equations(damped, gradient[:, parameters:, None])[:, :, 0]
+        whole = self._moved_by(values, following + step)
+        if not whole._cost > self._cost:
+            return whole
+        without, expected = (
+            _expected_gain(information, gradient, np.hstack([np.tile(change, (len(step), 1)), states]))
+            for states in (following, following + step)
+        )
+        promised, lost = expected - without, expected - (self._costs - whole._costs)
+        if promised.sum() < _MOSTLY * expected.sum():
+            return whole
+        loses = (promised > 0) & (lost > promised)
+        part = np.divide(promised, promised + lost, out=np.ones_like(lost), where=loses)
+        return self._moved_by(values, following + part[:, None] * step)
+
+    def _moved_by(self, values: Real, states: Real) -> TimeSteppingAt:
+        """Return the likelihood at other parameter values, initial states and memories moved by so much."""
         of_model = (values - self.values)[: self.objective.sensors.shared]
-        change = np.hstack([np.tile(of_model, (len(step), 1)), step])
-        return self.objective.at_states(values, self.weights, self.stepped.begin + step, self.stepped.predict(change))
+        near = self.stepped.predict(np.hstack([np.tile(of_model, (len(states), 1)), states]))
+        return self.objective.at_states(values, self.weights, self.stepped.begin + states, near)
 
     def with_optimal_states(self) -> TimeSteppingAt:
         """Return the likelihood with the initial states that maximise it at these parameters."""
@@ -86,7 +109,14 @@ class TimeSteppingAt:
 
     @property
     def _cost(self) -> float:
-        return float(self.residual_sums.sum(axis=0) @ self.weights) + self.penalty
+        return float(self._costs.sum())
+
+    @property
+    def _costs(self) -> Real:
+        """Twice the negative log-likelihood of each drop, up to a constant, shape (drop,)."""
+        return np.asarray(
+            self.residual_sums @ self.weights + np.sum((self.stepped.begin / self.objective.prior_std) ** 2, axis=1)
+        )
 
     def of_drop(self, drop: int) -> TimeSteppingAt:
         """Return the likelihood of one drop alone, by its position."""
@@ -191,3 +221,10 @@ class TimeSteppingAt:
         )
         unknown = np.full((whole.shape[1], before), np.nan)
         return np.hstack([unknown, whole.T])
+
+
+def _expected_gain(information: Real, gradient: Real, change: Real) -> Real:
+    """Return what twice the log-likelihood of each drop gains by a change of its unknowns, to the second order, (drop,)."""
+    turned = (information @ change[:, :, None])[:, :, 0]
+    gain: Real = np.sum((2.0 * gradient - turned) * change, axis=1)
+    return gain

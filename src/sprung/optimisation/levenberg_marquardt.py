@@ -27,6 +27,16 @@ _STALLED = (
 _HELD_BACK = 3
 """Times that coordinates are held back, of which others may go too far then, before the whole step is shortened."""
 
+_FASTER = 4.0
+"""What the factor by which the damping rises grows by, each time that a step loses: little damping changes nothing."""
+
+_POOR, _GOOD = 0.25, (0.75, 1.3)
+"""Gain of a step, as a part of what was expected, up to which the damping rises, and within which it falls fast."""
+
+_LOWERED, _EASED, _RAISED = 100.0, 3.0, 8.0
+"""Factors by which the damping falls after a step that gained what was expected, and after others that gained; and by which it
+rises after one that gained little."""
+
 _FIRM = 1.0  # damping above which a small gain says nothing of what is left to gain
 
 NONE_ELIMINATED: Real = np.zeros((2, 0))
@@ -188,7 +198,7 @@ def _gaining_step(
     In a curved valley the straight way leads up its wall, and only the next step down again, further along: where the first
     step loses, one more is tried from there (the watchdog). No step is tried that would gain too little.
     """
-    first = True
+    first, raised = True, _EASED
     while damping < _MOST_DAMPING:
         # They follow the others, and are nearly linear: their whole step is shortened only where it loses.
         of_eliminated = 0.0 if first else damping
@@ -199,22 +209,27 @@ def _gaining_step(
         if gain >= 0:
             # More than a million times what was expected is as good as any.
             ratio = gain / max(expected, 1e-6 * gain, np.finfo(float).tiny)
-            return tried, _next_damping(damping, ratio), max(expected, gain)
+            # The damping that this step needed is about what the next one will need.
+            following = _next_damping(damping, ratio) if first else damping / _EASED
+            return tried, following, max(expected, gain)
         if first and np.isfinite(gain):
             back, _ = problem.normal_equations(tried).step(damping, longest)
             second_point, further = problem.trial(tried, back, of_eliminated)
             if gain + further > 0:
                 return second_point, damping, max(expected, gain + further)
             first = False
-        damping = max(damping, 1e-8) * 8
+        damping, raised = max(damping, 1e-8) * raised, raised * _FASTER
     return None
 
 
 def _next_damping(damping: float, ratio: float) -> float:
-    """Return the damping after a step that gained so much of what was expected."""
-    if ratio <= 0.25:
-        return 8 * damping
-    return max(damping / (100 if ratio > 0.75 else 10), _LEAST_DAMPING)
+    """Return the damping after a step that gained so much of what was expected.
+
+    It falls fast only where the expectation was right: a gain that is many times as large says as little of the next step.
+    """
+    if ratio <= _POOR:
+        return _RAISED * damping
+    return max(damping / (_LOWERED if _GOOD[0] < ratio < _GOOD[1] else _EASED), _LEAST_DAMPING)
 
 
 def _limited(step: Array, longest: float) -> Array:

@@ -170,7 +170,8 @@ def fit_from_ordinary_vehicle(search: ModelSearch, structure: ModelStructure) ->
 def fit_usual_terms(search: ModelSearch, rich: ModelStructure) -> ModelSearch | None:
     """Fit a structure from an ordinary vehicle whose terms have their usual sizes, to the beginnings of the decays.
 
-    A fit of everything at once may lose friction, and what resembles it then makes up for it: it begins without friction then.
+    A fit of everything at once may lose friction, of one axle even, and what resembles it then makes up for it: it begins
+    without friction then.
 
     Parameters
     ----------
@@ -191,7 +192,7 @@ def fit_usual_terms(search: ModelSearch, rich: ModelStructure) -> ModelSearch | 
     rich = replace(rich, usual=usual | held_sizes(rich, values))
     start = replace(search, structure=rich, fit=at_start)
     best = _fit_beginnings(search, start, rich)
-    lost = {term for term in rich.terms if TERMS[term].resembles_others and (best is None or not best.needs(term))}
+    lost = {term for term in rich.terms if TERMS[term].resembles_others and (best is None or best.is_lost(term))}
     if lost:
         without = rich.with_terms(tuple(term for term in rich.terms if term not in lost))
         other = _fit_beginnings(search, start, without)

@@ -315,6 +315,12 @@ class ModelSearch:
         """Whether nothing speaks against a term of the model, and twice the log-likelihood would lose enough without it."""
         return not self.veto(term) and self.wald_gain(term) > self.required(term)
 
+    def is_lost(self, term: str) -> bool:
+        """Whether a term of the model, or a part of it, is not needed: its size at one of the axles, say."""
+        parts = TERMS[term].neutral(self.structure.tracks, self.structure.layout)
+        limit = required_gain(1, 1, 1.0, self.overdispersion)
+        return not self.needs(term) or any(wald_test(self.fit, [part]) < limit for part in parts)
+
     def veto(self, term: str) -> str:
         """Reason against a term of the model, whatever it gains; empty where there is none."""
         row, parameters = TERMS[term], self.fit.parameters

@@ -238,9 +238,9 @@ def select_gravity_leakage(search: ModelSearch) -> ModelSearch:
     -------
     ModelSearch
     """
-    # A fit that ended a standard error away gains by any further step.
+    # The body turns most in the beginnings. Any step gains in them, with leakage or without.
     same, other = (
-        search.refit(replace(search.structure, gravity_leakage=leaks), most=_ITERATIONS_OF_SWITCH, enough=NEAR)
+        search.refit(replace(search.structure, gravity_leakage=leaks), _ITERATIONS_OF_SWITCH, True, NEAR)
         for leaks in (False, True)
     )
     return other.refit(other.structure) if other.gain_over(same) > search.required_of_switch else search
