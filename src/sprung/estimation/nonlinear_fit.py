@@ -125,7 +125,7 @@ def fit_nonlinear(
         start_damping = _FAR if usual else CLOSE_BY
         if tolerance >= _ON_THE_WAY or beginning_only:
             # What is found on the way of the memories of friction is used by no one.
-            found = problem.maximise(problem.priors.nearest(values), None, tolerance, start_damping, most)
+            found = problem.maximise(problem.priors.nearest(values), None, tolerance, start_damping, most, bool(usual))
         else:
             found = _maximise(problem, objective, values, tolerance, most, start_damping)
         states, steps = found.point.at.states, steps + found.steps
@@ -250,7 +250,7 @@ def _maximise(
 
     Whether that is likelier shows on the way: only then is it followed to the end. A single step only compares models.
     """
-    best = problem.maximise(problem.priors.nearest(values), None, tolerance, damping, most)
+    best = problem.maximise(problem.priors.nearest(values), None, tolerance, damping, most, damping >= _FAR)
     states = objective.without_impossible_memories(best.point.at.values, best.point.at.states)
     if states is None or most == 1:
         return best

@@ -329,6 +329,7 @@ class EstimationProblem:
         tolerance: float = CONVERGED,
         damping: float = FAR,
         most: int = MOST_STEPS,
+        cautious: bool = False,
     ) -> Maximum[Iterate]:
         """Maximise the likelihood from a start.
 
@@ -346,6 +347,8 @@ class EstimationProblem:
             is nearly there.
         most
             Steps at the most.
+        cautious
+            Whether the start is far away and forces are not linear.
 
         Returns
         -------
@@ -367,6 +370,7 @@ class EstimationProblem:
             most_steps=steps,
             longest_step=_LONGEST_STEP,
             stop=reaches_other,
+            cautious=cautious,
         )
         reached = (
             other is not None and not found.converged and reaches_other(found.point, self.normal_equations(found.point))

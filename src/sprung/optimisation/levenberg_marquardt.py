@@ -33,9 +33,9 @@ _FASTER = 4.0
 _POOR, _GOOD = 0.25, (0.75, 1.3)
 """Gain of a step, as a part of what was expected, up to which the damping rises, and within which it falls fast."""
 
-_LOWERED, _EASED, _RAISED = 100.0, 3.0, 8.0
-"""Factors by which the damping falls after a step that gained what was expected, and after others that gained; and by which it
-rises after one that gained little."""
+_LOWERED, _USUAL, _EASED, _RAISED = 100.0, 10.0, 3.0, 8.0
+"""Factors by which the damping falls after a step that gained what was expected, after others that gained, and after these
+where the start is far away; and by which it rises after one that gained little."""
 
 _FIRM = 1.0  # damping above which a small gain says nothing of what is left to gain
 
@@ -135,6 +135,7 @@ def maximise(
     most_steps: int,
     longest_step: float = np.inf,
     stop: Callable[[Point, NormalEquations], bool] | None = None,
+    cautious: bool = False,
 ) -> Maximum[Point]:
     """Maximise a log-likelihood from a start.
 
@@ -154,6 +155,8 @@ def maximise(
         Largest change of a coordinate in one step.
     stop
         Asked at every point; where it holds, the maximisation ends there, without having converged.
+    cautious
+        Whether the damping falls fast only where a gain was expected, and rises ever faster: from a start that is far away.
 
     Returns
     -------
@@ -167,7 +170,7 @@ def maximise(
         # A damped step gains less than the Newton step: where it gains enough, there is no need of that one.
         if equations.step(damping)[1] < tolerance and equations.step()[1] < tolerance:
             return Maximum(point, steps, converged=True)
-        found = _gaining_step(problem, point, equations, damping, longest_step, tolerance)
+        found = _gaining_step(problem, point, equations, damping, longest_step, tolerance, cautious)
         if found is None:
             # Not even the shortest step gains: without noise rounding leaves no more.
             return Maximum(
@@ -189,6 +192,7 @@ def _gaining_step(
     damping: float,
     longest: float,
     tolerance: float,
+    cautious: bool,
 ) -> tuple[Point, float, float] | None:
     """Return the point a step further that does not lose, the next damping and the gain; None if there is none.
 
@@ -198,7 +202,7 @@ def _gaining_step(
     In a curved valley the straight way leads up its wall, and only the next step down again, further along: where the first
     step loses, one more is tried from there (the watchdog). No step is tried that would gain too little.
     """
-    first, raised = True, _EASED
+    first, raised = True, _EASED if cautious else _RAISED
     while damping < _MOST_DAMPING:
         # They follow the others, and are nearly linear: their whole step is shortened only where it loses.
         of_eliminated = 0.0 if first else damping
@@ -210,7 +214,7 @@ def _gaining_step(
             # More than a million times what was expected is as good as any.
             ratio = gain / max(expected, 1e-6 * gain, np.finfo(float).tiny)
             # The damping that this step needed is about what the next one will need.
-            following = _next_damping(damping, ratio) if first else damping / _EASED
+            following = _next_damping(damping, ratio, cautious) if first or not cautious else damping / _EASED
             return tried, following, max(expected, gain)
         if first and np.isfinite(gain):
             back, _ = problem.normal_equations(tried).step(damping, longest)
@@ -218,18 +222,19 @@ def _gaining_step(
             if gain + further > 0:
                 return second_point, damping, max(expected, gain + further)
             first = False
-        damping, raised = max(damping, 1e-8) * raised, raised * _FASTER
+        damping, raised = max(damping, 1e-8) * raised, raised * (_FASTER if cautious else 1.0)
     return None
 
 
-def _next_damping(damping: float, ratio: float) -> float:
+def _next_damping(damping: float, ratio: float, cautious: bool) -> float:
     """Return the damping after a step that gained so much of what was expected.
 
-    It falls fast only where the expectation was right: a gain that is many times as large says as little of the next step.
+    Far away a gain that is many times as large says as little of the next step as one that is small.
     """
     if ratio <= _POOR:
         return _RAISED * damping
-    return max(damping / (_LOWERED if _GOOD[0] < ratio < _GOOD[1] else _EASED), _LEAST_DAMPING)
+    is_right = _GOOD[0] < ratio < (_GOOD[1] if cautious else np.inf)
+    return max(damping / (_LOWERED if is_right else _EASED if cautious else _USUAL), _LEAST_DAMPING)
 
 
 def _limited(step: Array, longest: float) -> Array:
