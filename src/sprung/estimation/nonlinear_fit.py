@@ -119,15 +119,15 @@ def fit_nonlinear(
     )
     if not beginning_only:
         stages.append((list(decays), enough, fine))
+    is_far = bool(usual)
     for part, tolerance, longest_step in stages:
         objective = _objective(part, models, sensors, known, states, tilting, low_pass, longest_step)
         problem = _problem(objective, known, values, usual)
-        start_damping = _FAR if usual else CLOSE_BY
         if tolerance >= _ON_THE_WAY or beginning_only:
             # What is found on the way of the memories of friction is used by no one.
-            found = problem.maximise(problem.priors.nearest(values), None, tolerance, start_damping, most, bool(usual))
+            found = _maximise_once(problem, values, tolerance, most, is_far)
         else:
-            found = _maximise(problem, objective, values, tolerance, most, start_damping)
+            found = _maximise(problem, objective, values, tolerance, most, is_far)
         states, steps = found.point.at.states, steps + found.steps
         values = dict(zip(problem.priors.coordinates.names, found.point.at.values.tolist(), strict=True))
     # Whoever goes on from here starts with the initial states that were found.
@@ -238,19 +238,27 @@ def _problem(
     return EstimationProblem(objective, PriorsAndConstraints(coordinates, known, usual))
 
 
+def _maximise_once(
+    problem: EstimationProblem, values: Mapping[str, float], tolerance: float, most: int, is_far: bool
+) -> Maximum[Iterate]:
+    """Maximise from a start that is far away, or close by."""
+    damping = _FAR if is_far else CLOSE_BY
+    return problem.maximise(problem.priors.nearest(values), None, tolerance, damping, most, cautious=is_far)
+
+
 def _maximise(
     problem: EstimationProblem,
     objective: TimeSteppingObjective,
     values: Mapping[str, float],
     tolerance: float,
     most: int,
-    damping: float,
+    is_far: bool,
 ) -> Maximum[Iterate]:
     """Maximise, and once more from there without impossible memories of friction.
 
     Whether that is likelier shows on the way: only then is it followed to the end. A single step only compares models.
     """
-    best = problem.maximise(problem.priors.nearest(values), None, tolerance, damping, most, damping >= _FAR)
+    best = _maximise_once(problem, values, tolerance, most, is_far)
     states = objective.without_impossible_memories(best.point.at.values, best.point.at.states)
     if states is None or most == 1:
         return best

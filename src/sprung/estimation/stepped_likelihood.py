@@ -114,9 +114,12 @@ class TimeSteppingAt:
     @property
     def _costs(self) -> Real:
         """Twice the negative log-likelihood of each drop, up to a constant, shape (drop,)."""
-        return np.asarray(
-            self.residual_sums @ self.weights + np.sum((self.stepped.begin / self.objective.prior_std) ** 2, axis=1)
-        )
+        return np.asarray(self.residual_sums @ self.weights + self._penalties)
+
+    @property
+    def _penalties(self) -> Real:
+        """Twice the negative log-likelihood of each drop's initial state under its prior, shape (drop,)."""
+        return np.asarray(np.sum((self.stepped.begin / self.objective.prior_std) ** 2, axis=1))
 
     def of_drop(self, drop: int) -> TimeSteppingAt:
         """Return the likelihood of one drop alone, by its position."""
@@ -128,7 +131,7 @@ class TimeSteppingAt:
     @property
     def penalty(self) -> float:
         """Twice the negative log-likelihood of the initial states under their prior."""
-        return float(np.sum((self.stepped.begin / self.objective.prior_std) ** 2))
+        return float(self._penalties.sum())
 
     @cached_property
     def _normal_equations(self) -> tuple[Real, Real]:

@@ -240,7 +240,9 @@ def select_gravity_leakage(search: ModelSearch) -> ModelSearch:
     """
     # The body turns most in the beginnings. Any step gains in them, with leakage or without.
     same, other = (
-        search.refit(replace(search.structure, gravity_leakage=leaks), _ITERATIONS_OF_SWITCH, True, NEAR)
+        search.refit(
+            replace(search.structure, gravity_leakage=leaks), _ITERATIONS_OF_SWITCH, beginning_only=True, enough=NEAR
+        )
         for leaks in (False, True)
     )
     return other.refit(other.structure) if other.gain_over(same) > search.required_of_switch else search
