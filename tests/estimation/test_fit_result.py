@@ -137,7 +137,10 @@ def test_one_drop_of_a_stepped_fit_is_that_drop(stepped: FitResult) -> None:
     assert isinstance(at, TimeSteppingAt)
     alone, whole = at.of_drop(2), at.objective.at_states(at.values, at.weights, at.stepped.begin)
     np.testing.assert_allclose(alone.residual_sums[0], at.residual_sums[2], rtol=1e-12)
-    np.testing.assert_allclose(alone.gradient, at.by_drop[0][2], rtol=1e-9)
+    # Derivatives are of single precision: some 1e-5 of each, and of 8000 residuals the root of these sums up.
+    # 1e-3 of a standard error is below all that a fit resolves.
+    errors = (alone.gradient - at.by_drop[0][2]) / np.sqrt(np.diagonal(alone.information))
+    assert np.abs(errors).max() < 1e-3
     # The fit followed segments of the motions until they met to 1e-6.
     np.testing.assert_allclose(whole.residual_sums, stepped.residual_sums, rtol=1e-7)
 

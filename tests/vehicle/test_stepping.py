@@ -238,7 +238,9 @@ def test_derivatives_are_those_of_the_steps_themselves(ground: bool, monkeypatch
     number, length = segments_of(steps, 1)
     assert 1 < number < number * length
     for segment in range(number):
-        np.testing.assert_array_equal(starts[:, segment, :14], found[segment * length, :, :14])
+        own = found[segment * length, :, :14]
+        single = np.finfo(np.float32).eps * np.abs(own).max(axis=-1, keepdims=True)
+        assert (np.abs(starts[:, segment, :14] - own) <= 4 * single).all()
     if ground:
         matrices = linear_part()
         touching = matrices.deflection(matrices.M @ np.array([1.0, 0, 0, 1, 1, 1, 1]) * 9.80665)[3:7]

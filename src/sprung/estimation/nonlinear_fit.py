@@ -10,14 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.estimation.fit_result import FitResult
+from sprung.estimation.impossible_memories import go_on_without_impossible_memories
 from sprung.estimation.linear_fit import NEAR, expected_nuisances
 from sprung.estimation.low_pass import LowPass
 from sprung.estimation.priors import Coordinates, PriorsAndConstraints, UsualValue
-from sprung.estimation.problem import CLOSE_BY, CONVERGED, EstimationProblem, Iterate
+from sprung.estimation.problem import CLOSE_BY, CONVERGED, EstimationProblem
 from sprung.estimation.score_test import score_test
 from sprung.estimation.statements import readout_of, statements_of
 from sprung.estimation.time_stepping import TimeSteppingObjective
-from sprung.optimisation import Maximum
 from sprung.preprocess import FreeDecay
 from sprung.progress import Progress, Step, silent
 from sprung.uncertainty import KnownValue
@@ -112,22 +112,22 @@ def fit_nonlinear(
                 [_beginning(decay) for decay in decays],
                 max(enough, NEAR if beginning_only else _ON_THE_WAY),
                 _COARSE if low_pass is None or not beginning_only else fine,
+                bool(usual),
             )
         ]
         if beginning_only or not near
         else []
     )
     if not beginning_only:
-        stages.append((list(decays), enough, fine))
-    is_far = bool(usual)
-    for part, tolerance, longest_step in stages:
+        stages.append((list(decays), enough, fine, False))
+    for part, tolerance, longest_step, is_far in stages:
         objective = _objective(part, models, sensors, known, states, tilting, low_pass, longest_step)
         problem = _problem(objective, known, values, usual)
-        if tolerance >= _ON_THE_WAY or beginning_only:
-            # What is found on the way of the memories of friction is used by no one.
-            found = _maximise_once(problem, values, tolerance, most, is_far)
-        else:
-            found = _maximise(problem, objective, values, tolerance, most, is_far)
+        damping = _FAR if is_far else CLOSE_BY
+        found = problem.maximise(problem.priors.nearest(values), None, tolerance, damping, most, cautious=is_far)
+        # What is found on the way of the memories of friction is used by no one, and a single step only compares models.
+        if tolerance < _ON_THE_WAY and not beginning_only and most > 1:
+            found = go_on_without_impossible_memories(problem, objective, found, tolerance, most)
         states, steps = found.point.at.states, steps + found.steps
         values = dict(zip(problem.priors.coordinates.names, found.point.at.values.tolist(), strict=True))
     # Whoever goes on from here starts with the initial states that were found.
@@ -236,39 +236,6 @@ def _problem(
 ) -> EstimationProblem:
     coordinates = Coordinates.scaled_by(objective.sensors.names, typical)
     return EstimationProblem(objective, PriorsAndConstraints(coordinates, known, usual))
-
-
-def _maximise_once(
-    problem: EstimationProblem, values: Mapping[str, float], tolerance: float, most: int, is_far: bool
-) -> Maximum[Iterate]:
-    """Maximise from a start that is far away, or close by."""
-    damping = _FAR if is_far else CLOSE_BY
-    return problem.maximise(problem.priors.nearest(values), None, tolerance, damping, most, cautious=is_far)
-
-
-def _maximise(
-    problem: EstimationProblem,
-    objective: TimeSteppingObjective,
-    values: Mapping[str, float],
-    tolerance: float,
-    most: int,
-    is_far: bool,
-) -> Maximum[Iterate]:
-    """Maximise, and once more from there without impossible memories of friction.
-
-    Whether that is likelier shows on the way: only then is it followed to the end. A single step only compares models.
-    """
-    best = _maximise_once(problem, values, tolerance, most, is_far)
-    states = objective.without_impossible_memories(best.point.at.values, best.point.at.states)
-    if states is None or most == 1:
-        return best
-    found, steps, u = best, best.steps, best.point.u
-    for enough in (_ON_THE_WAY, tolerance):
-        found = replace(problem, objective=objective.with_states(states)).maximise(u, None, enough, CLOSE_BY, most)
-        steps, states, u = steps + found.steps, found.point.at.states, found.point.u
-        if problem.cost(found.point) > problem.cost(best.point) + enough:
-            return best
-    return found._replace(steps=steps) if problem.cost(found.point) < problem.cost(best.point) else best
 
 
 def _beginning(decay: FreeDecay) -> FreeDecay:

@@ -257,7 +257,7 @@ class TimeSteppingObjective:
             return None
         travel = X @ forces.rows.at(values).T
         still = np.zeros_like(travel)  # a friction's force is its memory, whatever the rate
-        answer = forces.evaluate(forces.parameters(values), ElementInput(travel, still, still, memories))
+        answer = forces.at(values).evaluate(ElementInput(travel, still, still, memories))
         directions = np.array([model.forces.directions(values) for model in self.models_by_kind])[self.kind]
         lost = np.einsum(
             "dm,dmx->dx", np.where(impossible, memories, 0.0) * answer.by_memory, directions[:, forces.memory_rows]

@@ -206,7 +206,7 @@ def _rest(model: NonlinearModel, values: Array, start: Array, heights: Array, he
     for _ in range(_ITERATIONS):
         travel = G @ X - raised + offsets
         zero = np.zeros_like(travel)
-        found = forces.evaluate(forces.parameters(values), ElementInput(travel, zero, zero, np.zeros(forces.memories)))
+        found = forces.at(values).evaluate(ElementInput(travel, zero, zero, np.zeros(forces.memories)))
         residual = K @ X + load + directions.T @ found.force
         X = X - matrices._replace(K=K + (directions.T * found.by_travel) @ G).deflection(residual)
         if np.abs(residual).max() < 1e-9 * np.abs(load).max():

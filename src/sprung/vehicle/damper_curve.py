@@ -5,14 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
-from itertools import accumulate
-from operator import mul
 from typing import Generic, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.vehicle.force_laws import ElementForce, ElementInput, ForceLaw
+from sprung.vehicle.force_laws import ForceLaw, bent_law
 from sprung.vehicle.kinks import Kinks
 
 Array = NDArray[np.float64]
@@ -110,114 +108,18 @@ def damper_curve(parts: CurveParts = _KNOTS_ALONE) -> ForceLaw:
     parts
         What it has besides knots.
     """
-    return ForceLaw(
-        "damper-curve",
-        False,
-        partial(_force, parts),
-        partial(_derivatives, parts),
-        partial(_kinks, parts),
-    )
-
-
-class _Side(NamedTuple):
-    """The parameters of a curve on the side on which each element moves: damping, rounding, velocities and ratios of knots."""
-
-    damping: Array
-    rounding: Array | None
-    velocities: Sequence[Array]
-    ratios: Sequence[Array]
-
-    @property
-    def slopes(self) -> list[Array]:
-        """The slope before each knot, as a part of the damping."""
-        return list(accumulate(self.ratios[:-1], mul, initial=_ONE))
-
-    @property
-    def drops(self) -> list[Array]:
-        """What each knot takes off the slope, as a part of the damping."""
-        return [slope * (1.0 - ratio) for slope, ratio in zip(self.slopes, self.ratios, strict=True)]
-
-
-def _side(parts: CurveParts, own: CurveParameters[Array], extends: NDArray[np.bool_]) -> _Side:
-    """Return the parameters of the side on which each element moves."""
-    damping = own.damping * np.where(extends, own.ratio, 1.0) if parts.has_ratio else own.damping
-    if not parts.has_rebound_knee:
-        return _Side(damping, own.rounding, own.velocities, own.ratios)
-    shift, bend = np.where(extends, own.velocity_ratio, 1.0), np.where(extends, own.slope_ratio, 1.0)
-    first, *others = own.ratios
-    rounding = None if own.rounding is None else own.rounding * shift
-    return _Side(damping, rounding, [velocity * shift for velocity in own.velocities], [first * bend, *others])
-
-
-def _force(parts: CurveParts, parameters: Array, given: ElementInput) -> ElementForce:
-    """Return what the knots take off the force of a damper of constant rate."""
-    side = _side(parts, CurveParameters.of(parts, list(parameters), _ONE), given.rate > 0)
-    size, zero = np.abs(given.rate), np.zeros_like(given.travel)
-    missing, slope = zero, zero
-    for velocity, drop in zip(side.velocities, side.drops, strict=True):
-        excess, by_size, _, _ = _knot(size, velocity, side.rounding)
-        missing, slope = missing + drop * excess, slope + drop * by_size
-    force = -side.damping * np.sign(given.rate) * missing
-    return ElementForce(force, given.memory, zero, -side.damping * slope, zero, zero, zero)
-
-
-def _derivatives(parts: CurveParts, parameters: Array, given: ElementInput) -> tuple[Array, Array]:
-    """Return the derivatives of the force by the parameters; it has no memory."""
-    own, extends = CurveParameters.of(parts, list(parameters), _ONE), given.rate > 0
-    side, size, zero = _side(parts, own, extends), np.abs(given.rate), np.zeros_like(given.travel)
-    knots, drops = [_knot(size, velocity, side.rounding) for velocity in side.velocities], side.drops
-    lost = [drop * knot[0] for drop, knot in zip(drops, knots, strict=True)]
-    unit, missing = -np.sign(given.rate), sum(lost, zero)
-    whole = unit * side.damping
-    by_velocity = [whole * drop * knot[2] for drop, knot in zip(drops, knots, strict=True)]
-    # Behind a knot all slopes have its ratio as a factor.
-    by_ratio = [
-        whole * (sum(lost[i + 1 :], zero) / ratio - slope * knots[i][0])
-        for i, (ratio, slope) in enumerate(zip(side.ratios, side.slopes, strict=True))
-    ]
-    by_rounding = zero
-    if parts.is_rounded:
-        by_rounding = whole * sum((drop * knot[3] for drop, knot in zip(drops, knots, strict=True)), zero)
-    force = [unit * missing * np.where(extends, own.ratio, 1.0)]
-    if parts.has_ratio:
-        force.append(own.damping * unit * missing * extends)
-    if parts.has_rebound_knee:
-        shifted = sum((one * velocity for one, velocity in zip(by_velocity, own.velocities, strict=True)), zero)
-        shifted += 0.0 if own.rounding is None else by_rounding * own.rounding
-        force += [shifted * extends, by_ratio[0] * own.ratios[0] * extends]
-        shift = np.where(extends, own.velocity_ratio, 1.0)
-        by_velocity, by_rounding = [one * shift for one in by_velocity], by_rounding * shift
-        by_ratio[0] = by_ratio[0] * np.where(extends, own.slope_ratio, 1.0)
-    if parts.is_rounded:
-        force.append(by_rounding)
-    for of_velocity, of_ratio in zip(by_velocity, by_ratio, strict=True):
-        force += [of_velocity, of_ratio]
-    return np.stack(force), np.zeros((len(force), *size.shape))
+    return bent_law("damper-curve", partial(_kinks, parts))
 
 
 def _kinks(parts: CurveParts, parameters: Array) -> Kinks:
-    """Return the knots of both sides; the force of each bends by what it takes off the slope."""
+    """Return the knots of both sides: each takes a part off the slope behind it."""
     own, none = CurveParameters.of(parts, list(parameters), _ONE), np.zeros_like(parameters[0])
-    found = []
+    knots: list[tuple[Array, ...]] = []
     for sign in (1.0, -1.0):
-        side = _side(parts, own, np.array(sign > 0))
-        width = none if side.rounding is None else side.rounding
-        for velocity, drop in zip(side.velocities, side.drops, strict=True):
-            found.append((none, none + 1.0, sign * velocity, -sign * side.damping * drop, none + width))
-    return Kinks(*(np.stack(part) for part in zip(*found, strict=True)))
-
-
-def _knot(size: Array, velocity: Array, rounding: Array | None) -> tuple[Array, Array, Array, Array]:
-    """Return max(u, 0) of u = size - velocity, and its derivatives by size, velocity and rounding.
-
-    With a rounding w it is (u + sqrt(u² + w²))/2, less its value at rest.
-    """
-    u = size - velocity
-    if rounding is None:
-        slope = (u > 0).astype(float)
-        return np.maximum(u, 0.0), slope, -slope, np.zeros_like(u)
-    root, rest = np.hypot(u, rounding), np.hypot(velocity, rounding)
-    safe = np.maximum(root, np.finfo(float).tiny)
-    slope, slope_at_rest = 0.5 * (1.0 + u / safe), 0.5 * (1.0 - velocity / rest)
-    value = 0.5 * (u + root) - 0.5 * (rest - velocity)
-    return value, slope, slope_at_rest - slope, 0.5 * rounding * (1 / safe - 1 / rest)
+        ratio, shift, bend = (own.ratio, own.velocity_ratio, own.slope_ratio) if sign > 0 else (_ONE, _ONE, _ONE)
+        slope, width = own.damping * ratio, none if own.rounding is None else own.rounding * shift
+        for number, (velocity, left) in enumerate(zip(own.velocities, own.ratios, strict=True)):
+            behind = slope * left * (_ONE if number else bend)
+            knots.append((none, none + sign, velocity * shift, sign * (behind - slope), none + width))
+            slope = behind
+    return Kinks(*(np.stack(part) for part in zip(*knots, strict=True)))

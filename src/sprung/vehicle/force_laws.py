@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.vehicle.kinks import Kinks
+from sprung.vehicle.kinks import Kinks, differentiate_kinks, hinge
 
 Array = NDArray[np.float64]
 
@@ -91,7 +91,7 @@ class ForceLaw:
     differentiate
         Derivatives of force and memory by the law's parameters, each of shape (parameter, ..., element), from the same.
     kinks
-        Where the force bends, from the law's parameters, which may be complex; None where it nowhere does.
+        Of a force that is the sum of these alone, from the law's parameters, which may be complex; None for any other.
     """
 
     name: str
@@ -99,6 +99,43 @@ class ForceLaw:
     evaluate: Callable[[Array, ElementInput], ElementForce]
     differentiate: Callable[[Array, ElementInput], tuple[Array, Array]]
     kinks: Callable[[Array], Kinks] | None = None
+
+
+def bent_law(name: str, kinks: Callable[[Array], Kinks]) -> ForceLaw:
+    """Return the law of a force that is the sum of kinks."""
+    return ForceLaw(name, False, partial(_bent, kinks), partial(_bent_derivatives, kinks), kinks)
+
+
+def _bent(kinks_of: Callable[[Array], Kinks], parameters: Array, given: ElementInput) -> ElementForce:
+    kinks, zero = kinks_of(parameters), np.zeros_like(given.travel)
+    value, slope, *_ = hinge(kinks.above(given.travel, given.rate), kinks.position, kinks.width)
+    slope = kinks.jump * slope
+    force, by_travel, by_rate = (
+        part.sum(axis=-2) for part in (kinks.jump * value, kinks.by_travel * slope, kinks.by_rate * slope)
+    )
+    return ElementForce(force, given.memory, by_travel, by_rate, zero, zero, zero)
+
+
+def _bent_derivatives(
+    kinks_of: Callable[[Array], Kinks], parameters: Array, given: ElementInput
+) -> tuple[Array, Array]:
+    kinks, by_parameter = kinks_of(parameters), differentiate_kinks(kinks_of, parameters)
+    value, slope, by_position, by_width = hinge(kinks.above(given.travel, given.rate), kinks.position, kinks.width)
+    force = np.array(
+        [
+            (
+                moved.jump * value
+                + kinks.jump
+                * (
+                    slope * moved.above(given.travel, given.rate)
+                    + by_position * moved.position
+                    + by_width * moved.width
+                )
+            ).sum(axis=-2)
+            for moved in (Kinks(*parts) for parts in zip(*by_parameter, strict=True))
+        ]
+    )
+    return force, np.zeros_like(force)
 
 
 def _friction_length(parameters: Array) -> tuple[Array, Array]:
@@ -153,21 +190,6 @@ def _uneven_friction_derivatives(side: float, parameters: Array, given: ElementI
     return force, np.concatenate([np.zeros_like(memory[:1]), memory])
 
 
-def _rebound(parameters: Array, given: ElementInput) -> ElementForce:
-    ratio, damping = parameters
-    zero = np.zeros_like(given.travel)
-    extension = np.maximum(given.rate, 0.0)
-    excess = (ratio - 1.0) * damping
-    return ElementForce(excess * extension, given.memory, zero, excess * (given.rate > 0), zero, zero, zero)
-
-
-def _rebound_derivatives(parameters: Array, given: ElementInput) -> tuple[Array, Array]:
-    ratio, damping = parameters
-    extension = np.maximum(given.rate, 0.0)
-    force = np.stack([damping * extension, (ratio - 1.0) * extension])
-    return force, np.zeros_like(force)
-
-
 def _rebound_kinks(parameters: Array) -> Kinks:
     (ratio, damping), none = parameters[:, None], np.zeros_like(parameters[:1])
     return Kinks(none, none + 1.0, none, (ratio - 1.0) * damping, none)
@@ -175,9 +197,8 @@ def _rebound_kinks(parameters: Array) -> Kinks:
 
 def _progressive(parameters: Array, given: ElementInput) -> ElementForce:
     growth, spring = parameters
-    zero = np.zeros_like(given.travel)
-    rise = growth * spring
-    return ElementForce(-0.5 * rise * given.travel**2, given.memory, -rise * given.travel, zero, zero, zero, zero)
+    zero, by_travel = np.zeros_like(given.travel), -growth * spring * given.travel
+    return ElementForce(0.5 * by_travel * given.travel, given.memory, by_travel, zero, zero, zero, zero)
 
 
 def _progressive_derivatives(parameters: Array, given: ElementInput) -> tuple[Array, Array]:
@@ -227,61 +248,14 @@ def _air_derivatives(parameters: Array, given: ElementInput) -> tuple[Array, Arr
     return force, np.zeros_like(force)
 
 
-def _bump_stop(parameters: Array, given: ElementInput) -> ElementForce:
-    stiffness, clearance = parameters
-    zero = np.zeros_like(given.travel)
-    depth = np.maximum(-given.travel - clearance, 0.0)
-    return ElementForce(-stiffness * depth, given.memory, stiffness * (depth > 0), zero, zero, zero, zero)
-
-
-def _bump_stop_derivatives(parameters: Array, given: ElementInput) -> tuple[Array, Array]:
-    stiffness, clearance = parameters
-    depth = np.maximum(-given.travel - clearance, 0.0)
-    force = np.stack([-depth, stiffness * (depth > 0)])
-    return force, np.zeros_like(force)
-
-
 def _bump_stop_kinks(parameters: Array) -> Kinks:
     (stiffness, clearance), none = parameters[:, None], np.zeros_like(parameters[:1])
-    return Kinks(none + 1.0, none, -clearance, -stiffness, none)
-
-
-def _tyre_tension(parameters: Array, given: ElementInput) -> Array:
-    """Return the tension of a tyre that was fixed to the ground, N; zero where it is compressed."""
-    stiffness, *damping = parameters
-    tension: Array = stiffness * given.travel + sum((c * given.rate for c in damping), np.zeros_like(given.travel))
-    return np.maximum(tension, 0.0)
-
-
-def _ground(parameters: Array, given: ElementInput) -> ElementForce:
-    stiffness, *damping = parameters
-    tension, zero = _tyre_tension(parameters, given), np.zeros_like(given.travel)
-    lifted = tension > 0
-    by_rate = -sum(damping, np.zeros_like(stiffness)) * lifted
-    return ElementForce(-tension, given.memory, -stiffness * lifted, by_rate, zero, zero, zero)
-
-
-def _ground_derivatives(parameters: Array, given: ElementInput) -> tuple[Array, Array]:
-    lifted = _tyre_tension(parameters, given) > 0
-    force = np.stack([-given.travel * lifted, -given.rate * lifted][: len(parameters)])
-    return force, np.zeros_like(force)
+    return Kinks(none - 1.0, none, clearance, -stiffness, none)
 
 
 def _ground_kinks(parameters: Array) -> Kinks:
     (stiffness, *damping), none = parameters[:, None], np.zeros_like(parameters[:1])
     return Kinks(stiffness, sum(damping, none), none, none - 1.0, none)
-
-
-def _uneven_ground(side: float, parameters: Array, given: ElementInput) -> ElementForce:
-    mean, uneven, *damping = parameters
-    return _ground(np.stack([mean + side * uneven, *damping]), given)
-
-
-def _uneven_ground_derivatives(side: float, parameters: Array, given: ElementInput) -> tuple[Array, Array]:
-    mean, uneven, *damping = parameters
-    (by_rate, *others), _ = _ground_derivatives(np.stack([mean + side * uneven, *damping]), given)
-    force = np.stack([by_rate, side * by_rate, *others])
-    return force, np.zeros_like(force)
 
 
 def _uneven_ground_kinks(side: float, parameters: Array) -> Kinks:
@@ -297,7 +271,7 @@ LOAD_FRICTION = ForceLaw("load-friction", True, _load_friction, _load_friction_d
 """What a load adds to a dry friction, per weight that the spring carries of it: a coefficient u, and the force F, N, and
 presliding stiffness s, N/m, of the friction without the load. It builds up over the same travel F/s."""
 
-REBOUND = ForceLaw("rebound", False, _rebound, _rebound_derivatives, _rebound_kinks)
+REBOUND = bent_law("rebound", _rebound_kinks)
 """Excess of rebound over compression damping: ratio r of the two and damping c in compression, N s/m."""
 
 PROGRESSIVE = ForceLaw("progressive", False, _progressive, _progressive_derivatives)
@@ -314,10 +288,10 @@ TYRE_CURVE = ForceLaw("tyre-curve", False, _tyre_curve, _tyre_curve_derivatives)
 k where it first touches the ground, N/m; the travel is the height of the wheel above there. The whole tyre has the force
 k d (1 + h d/2) at the deflection d."""
 
-BUMP_STOP = ForceLaw("bump-stop", False, _bump_stop, _bump_stop_derivatives, _bump_stop_kinks)
+BUMP_STOP = bent_law("bump-stop", _bump_stop_kinks)
 """Bump stop: stiffness, N/m, and the compression at which it is met, m, from the empty vehicle at rest."""
 
-GROUND = ForceLaw("ground", False, _ground, _ground_derivatives, _ground_kinks)
+GROUND = bent_law("ground", _ground_kinks)
 """Unilateral contact of a tyre with the ground: cancels the tension of the linear tyre. Tyre rate, N/m, and tyre damping,
 N s/m, where it is a parameter; the travel is the height of the wheel above that at which its tyre just touches the ground."""
 
@@ -331,13 +305,7 @@ UNEVEN_FRICTION: Mapping[float, ForceLaw] = {
 mean, N; and force F, N, and presliding stiffness s, N/m, of the mean. It builds up over the same travel F/s on both sides."""
 
 UNEVEN_GROUND: Mapping[float, ForceLaw] = {
-    side: ForceLaw(
-        f"ground {name}",
-        False,
-        partial(_uneven_ground, side),
-        partial(_uneven_ground_derivatives, side),
-        partial(_uneven_ground_kinks, side),
-    )
+    side: bent_law(f"ground {name}", partial(_uneven_ground_kinks, side))
     for side, name in ((1.0, "left"), (-1.0, "right"))
 }
 """The same where tyre rates of both sides differ, by the side, 1 on the left: mean rate, N/m, by how much that of the left tyre

@@ -1,4 +1,6 @@
-"""Kinks of force laws: what the mean force over a time step has beyond that of a straight run between the ends of the step.
+"""Kinks of force laws: forces that begin to act where a travel or a rate passes a position, and their means over time steps.
+
+A damper's rebound and knots, a bump stop and the ground are sums of such forces, so all are evaluated together.
 
 Time stepping lets forces run linearly over a step. Where a law bends within it, the straight run lies on one side of the law
 at every crossing, and a fit would take that for another slope. The argument of a kink runs nearly straight over a step, so the
@@ -27,18 +29,19 @@ _COMPLEX_STEP = 1e-30
 
 
 class Kinks(NamedTuple):
-    """Where the force of elements bends; each of shape (kink, element), or (kink,) of all rows.
+    """Forces that begin to act where their argument passes a position; each of shape (kink, element), or (kink,) of all rows.
 
     Attributes
     ----------
     by_travel, by_rate
         The argument is the sum of the travel and the rate, multiplied by these.
     position
-        The argument at which the force bends.
+        The argument above which the force acts.
     jump
-        The slope of the force by the argument above it less that below.
+        The slope of the force by the argument there.
     width
-        Half the width over which a hyperbola rounds it; zero for none.
+        Half the width over which a hyperbola rounds it, (u + sqrt(u² + w²))/2 instead of max(u, 0); zero for none. The force
+        is then less by what it is at the argument zero, and none below that.
     """
 
     by_travel: Array
@@ -46,6 +49,18 @@ class Kinks(NamedTuple):
     position: Array
     jump: Array
     width: Array
+
+    def above(self, travel: Array, rate: Array) -> Array:
+        """Return how far arguments are above the positions, shape (..., kink, element), from those of elements."""
+        found: Array = self.by_travel * travel[..., None, :] + self.by_rate * rate[..., None, :] - self.position
+        return found
+
+
+def differentiate_kinks(kinks_of: Callable[[Array], Kinks], parameters: Array) -> Kinks:
+    """Differentiate kinks by the parameters of their law, shape (parameter, element): each (parameter, kink, element)."""
+    moved = parameters + 1j * _COMPLEX_STEP * np.eye(len(parameters))[:, :, None]
+    slopes = [np.array(kinks_of(own)).imag / _COMPLEX_STEP for own in moved]
+    return Kinks(*np.stack(slopes, axis=1))
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,54 +77,45 @@ class KinkForces:
         Of all rows.
     kinks
         Shape (kink,) each.
-    slopes
-        Their derivatives by the parameters of the laws, shape (kink, of law) each.
+    laws
+        Of each law with kinks its kinks by its parameters, the rows of its elements, shape (element,), the parameters, shape
+        (parameter, element), and their positions among those of all laws.
+    of_laws
+        How many parameters all laws have.
     """
 
     rows: Index
     row_of: Index
     number: int
     kinks: Kinks
-    slopes: Kinks
+    laws: Sequence[tuple[Callable[[Array], Kinks], Index, Array, Index]]
+    of_laws: int
 
     @classmethod
     def of(
-        cls,
-        laws: Sequence[tuple[Callable[[Array], Kinks], Index, Index]],
-        number: int,
-        values: Array,
-        of_laws: Index,
+        cls, laws: Sequence[tuple[Callable[[Array], Kinks], Index, Array, Index]], number: int, of_laws: int
     ) -> KinkForces:
-        """Collect the kinks of laws.
-
-        Parameters
-        ----------
-        laws
-            Of each law its kinks by its parameters, the rows of its elements, shape (element,), and the positions of the
-            parameters among the values, shape (parameter, element).
-        number
-            Of all rows.
-        values
-            Parameters, SI, shape (parameter,).
-        of_laws
-            Positions of the parameters that laws have, ascending.
-        """
-        parts, slopes, on = [np.zeros((5, 0))], [np.zeros((5, 0, len(of_laws)))], [np.zeros(0, dtype=np.int64)]
-        for kinks_of, at, positions in laws:
-            own = values[positions]
-            found = np.array(kinks_of(own))
-            _, kinks, elements = found.shape
-            by_parameter = np.zeros((5, kinks, elements, len(of_laws)))
-            for which, columns in enumerate(np.searchsorted(of_laws, positions)):
-                moved = own.astype(np.complex128)
-                moved[which] += 1j * _COMPLEX_STEP
-                slope = np.array(kinks_of(moved)).imag / _COMPLEX_STEP  # type: ignore[arg-type]
-                by_parameter[:, :, np.arange(elements), columns] += slope
+        """Collect the kinks of laws of elements with a number of rows, arguments as the attributes."""
+        parts, on = [np.zeros((5, 0))], [np.zeros(0, dtype=np.int64)]
+        for kinks_of, at, parameters, _ in laws:
+            found = np.array(kinks_of(parameters))
             parts.append(found.reshape(5, -1))
-            slopes.append(by_parameter.reshape(5, -1, len(of_laws)))
-            on.append(np.tile(at, kinks))
+            on.append(np.tile(at, found.shape[1]))
         rows, row_of = np.unique(np.concatenate(on), return_inverse=True)
-        return cls(rows, row_of, number, Kinks(*np.concatenate(parts, 1)), Kinks(*np.concatenate(slopes, 1)))
+        return cls(rows, row_of, number, Kinks(*np.concatenate(parts, 1)), laws, of_laws)
+
+    @cached_property
+    def slopes(self) -> Kinks:
+        """Derivatives of the kinks by the parameters of all laws, shape (kink, of law) each."""
+        slopes = [np.zeros((5, 0, self.of_laws))]
+        for kinks_of, _, parameters, positions in self.laws:
+            by_parameter = np.array(differentiate_kinks(kinks_of, parameters))
+            _, _, kinks, elements = by_parameter.shape
+            whole = np.zeros((5, kinks, elements, self.of_laws))
+            for which, columns in enumerate(positions):
+                whole[:, :, np.arange(elements), columns] += by_parameter[:, which]
+            slopes.append(whole.reshape(5, -1, self.of_laws))
+        return Kinks(*np.concatenate(slopes, 1))
 
     @cached_property
     def _of_inputs(self) -> Array:
@@ -118,6 +124,19 @@ class KinkForces:
         found[self.rows[self.row_of], kink] = self.kinks.by_travel
         found[self.number + self.rows[self.row_of], kink] = self.kinks.by_rate
         return found
+
+    @cached_property
+    def _by_hinge(self) -> Array:
+        """Force of each row by how far arguments are above their positions, shape (kink, row)."""
+        found = np.zeros((len(self.row_of), self.number))
+        found[np.arange(len(found)), self.rows[self.row_of]] = self.kinks.jump
+        return found
+
+    @cached_property
+    def _by_slope(self) -> Array:
+        """Slopes of each row's force by its travel and its rate, by which arguments are above, shape (kink, 2 row)."""
+        by_input = self.kinks.by_travel[:, None], self.kinks.by_rate[:, None]
+        return np.hstack([factor * self._by_hinge for factor in by_input])
 
     @cached_property
     def _collect(self) -> Array:
@@ -135,6 +154,16 @@ class KinkForces:
         above: Array = inputs @ self._of_inputs - self.kinks.position
         return above
 
+    def act(self, arguments: Array) -> tuple[Array, Array]:
+        """Return forces, and their slopes by travels and rates, shapes (..., row) and (..., 2 row), from `arguments`."""
+        values, slopes = np.maximum(arguments, 0.0), (arguments > 0).astype(np.float64)
+        if self._is_rounded.any():
+            at = self._is_rounded
+            values[..., at], slopes[..., at], *_ = hinge(
+                arguments[..., at], self.kinks.position[at], self.kinks.width[at]
+            )
+        return values @ self._by_hinge, slopes @ self._by_slope
+
     def lie_between(self, one: Array, other: Array) -> NDArray[np.bool_]:
         """Return in which rows a kink lies between two inputs, shape (..., 2 row): travels and rates of all rows."""
         passed, found = (
@@ -144,7 +173,7 @@ class KinkForces:
         found[..., self.rows] = passed @ (self._collect > 0)
         return found
 
-    def forces(self, before: Array, after: Array) -> Array:
+    def surplus(self, before: Array, after: Array) -> Array:
         """Return the additions to the force at the end of a step, N, shape (..., kinked row).
 
         Parameters
@@ -155,11 +184,13 @@ class KinkForces:
         excess = _sharp(before, after)
         if self._is_rounded.any():
             at = self._is_rounded
-            excess[..., at] = _rounded(before[..., at], after[..., at], self.kinks.width[at])[0]
+            excess[..., at] = _mean_rounded(before[..., at], after[..., at], self.kinks.width[at])[0]
         found: Array = excess @ (self.kinks.jump[:, None] * self._collect)
         return found
 
-    def add_slopes(self, before: Array, after: Array, by_before: Array, by_after: Array, by_parameter: Array) -> None:
+    def add_surplus_slopes(
+        self, before: Array, after: Array, by_before: Array, by_after: Array, by_parameter: Array
+    ) -> None:
         """Add the derivatives of the same forces.
 
         Parameters
@@ -180,7 +211,7 @@ class KinkForces:
         if self._is_rounded.any():
             at = self._is_rounded[kink]
             for whole, part in zip(
-                (excess, by_u, by_v, by_width), _rounded(u[at], v[at], kinks.width[at]), strict=True
+                (excess, by_u, by_v, by_width), _mean_rounded(u[at], v[at], kinks.width[at]), strict=True
             ):
                 whole[at] = part
         row = self.rows[self.row_of[kink]]
@@ -195,6 +226,35 @@ class KinkForces:
             np.add.at(total, travel, by_end * kinks.by_travel)
             np.add.at(total, rate, by_end * kinks.by_rate)
         np.add.at(by_parameter, travel, of_parameters)
+
+
+def hinge(above: Array, position: Array, width: Array) -> tuple[Array, Array, Array, Array]:
+    """Return the force of kinks of jump one, and its derivatives by u, the position and the width, where the others are held.
+
+    Parameters
+    ----------
+    above
+        How far arguments are above their positions, u, shape (..., of kinks).
+    position, width
+        Of the kinks.
+    """
+    is_rounded = width > 0
+    is_above = above > np.where(is_rounded, -position, 0.0)
+    # Any width does where none is asked for.
+    safe = np.where(is_rounded, width, 1.0)
+    root, at_zero = np.hypot(above, safe), np.hypot(position, safe)
+    rounded = (
+        0.5 * (above + root - at_zero + position),
+        0.5 * (1.0 + above / root),
+        0.5 * (1.0 - position / at_zero),
+        0.5 * safe * (1 / root - 1 / at_zero),
+    )
+    nowhere = np.zeros_like(above)
+    value, slope, by_position, by_width = (
+        np.where(is_above, np.where(is_rounded, one, sharp), 0.0)
+        for one, sharp in zip(rounded, (above, nowhere + 1.0, nowhere, nowhere), strict=True)
+    )
+    return value, slope, by_position, by_width
 
 
 def _sharp(before: Array, after: Array) -> Array:
@@ -212,7 +272,7 @@ def _sharp_slopes(before: Array, after: Array) -> tuple[Array, Array]:
     return unit * after**2, -unit * before**2
 
 
-def _rounded(before: Array, after: Array, width: Array) -> tuple[Array, Array, Array, Array]:
+def _mean_rounded(before: Array, after: Array, width: Array) -> tuple[Array, Array, Array, Array]:
     """Return the same of (u + sqrt(u² + w²))/2, and its derivatives by both ends and by the width w."""
     roots = np.hypot(before, width), np.hypot(after, width)
     change = after - before

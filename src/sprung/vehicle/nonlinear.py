@@ -29,6 +29,10 @@ Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
 
+_NODES = 12
+"""Of Gauss-Legendre quadrature over a step: exact to 1e-7 for decays of ten times the step's inverse, to rounding for usual."""
+
+
 class NonlinearForces(NamedTuple):
     """Nonlinear elements over one list of parameters, whose values are SI, shape (parameter,).
 
@@ -108,50 +112,16 @@ class NonlinearForces(NamedTuple):
         """Positions of the parameters that any law has, ascending, shape (of law,)."""
         return np.unique(np.concatenate([positions.ravel() for *_, positions in self.laws]))
 
-    def parameters(self, values: Array) -> tuple[Array, ...]:
-        """Return the parameters of each law, shape (parameter, element), from all parameters, SI, shape (parameter,)."""
-        return tuple(values[positions] for *_, positions in self.laws)
-
-    def kinks(self, values: Array) -> KinkForces:
-        """Return where the forces bend, from all parameters, SI, shape (parameter,)."""
+    def at(self, values: Array) -> ForcesAt:
+        """Return the forces at all parameters, SI, shape (parameter,)."""
+        of_laws = self.of_laws
         bent = [
-            (law.kinks, np.arange(self.number)[at], positions)
+            (law.kinks, np.arange(self.number)[at], values[positions], np.searchsorted(of_laws, positions))
             for law, at, _, positions in self.laws
             if law.kinks is not None
         ]
-        return KinkForces.of(bent, self.number, values, self.of_laws)
-
-    def evaluate(self, parameters: Sequence[Array], given: ElementInput) -> ElementForce:
-        """Return the force of each row.
-
-        Parameters
-        ----------
-        parameters
-            Of each law, as from `parameters`.
-        given
-            Input by row, shape (..., row), and memories, shape (..., memory).
-
-        Returns
-        -------
-        ElementForce
-            By row; what concerns a memory has the shape (..., memory), with the derivative of the row's force by it.
-        """
-        parts = [
-            law.evaluate(own_parameters, self._part(given, law, at, own))
-            for (law, at, own, _), own_parameters in zip(self.laws, parameters, strict=True)
-        ]
-        if len(parts) == 1 and self.memories:
-            return parts[0]
-        force, by_travel, by_rate = np.zeros((3, *given.travel.shape))
-        memory, by_memory, memory_by_travel, memory_by_memory = np.empty((4, *given.memory.shape))
-        for part, (law, at, own, _) in zip(parts, self.laws, strict=True):
-            force[..., at] += part.force
-            by_travel[..., at] += part.by_travel
-            by_rate[..., at] += part.by_rate
-            if law.has_memory:
-                memory[..., own], by_memory[..., own] = part.memory, part.by_memory
-                memory_by_travel[..., own], memory_by_memory[..., own] = part.memory_by_travel, part.memory_by_memory
-        return ElementForce(force, memory, by_travel, by_rate, by_memory, memory_by_travel, memory_by_memory)
+        others = tuple((law, at, own, values[positions]) for law, at, own, positions in self.laws if law.kinks is None)
+        return ForcesAt(self.number, others, KinkForces.of(bent, self.number, len(of_laws)))
 
     def differentiate(self, values: Array, given: ElementInput) -> tuple[Array, Array]:
         """Return the derivatives of forces and of memories by the parameters of the laws.
@@ -171,7 +141,7 @@ class NonlinearForces(NamedTuple):
         force = np.zeros((*given.travel.shape, len(self.of_laws)))
         memory = np.zeros((*given.memory.shape, len(self.of_laws)))
         for law, at, own, positions in self.laws:
-            of_force, of_memory = law.differentiate(values[positions], self._part(given, law, at, own))
+            of_force, of_memory = law.differentiate(values[positions], _part(given, law, at, own))
             row_of = np.arange(self.number)[at].tolist()
             for which, row in enumerate(np.searchsorted(self.of_laws, positions)):
                 for column, position in enumerate(row.tolist()):
@@ -180,10 +150,65 @@ class NonlinearForces(NamedTuple):
                         memory[..., own.start + column, position] += of_memory[which][..., column]
         return force, memory
 
-    @staticmethod
-    def _part(given: ElementInput, law: ForceLaw, at: slice | Index, own: slice) -> ElementInput:
-        travel, rate, increment = given.travel[..., at], given.rate[..., at], given.increment[..., at]
-        return ElementInput(travel, rate, increment, given.memory[..., own] if law.has_memory else _NO_MEMORY)
+
+class ForcesAt(NamedTuple):
+    """Nonlinear elements at parameter values.
+
+    Attributes
+    ----------
+    number
+        Of rows.
+    laws
+        Those that are not sums of kinks, as in `NonlinearForces`, but each with its parameters, shape (parameter, element).
+    kinks
+        What the others are sums of.
+    """
+
+    number: int
+    laws: tuple[tuple[ForceLaw, slice | Index, slice, Array], ...]
+    kinks: KinkForces
+
+    def evaluate(self, given: ElementInput, arguments: Array | None = None) -> ElementForce:
+        """Return the force of each row.
+
+        Parameters
+        ----------
+        given
+            Input by row, shape (..., row), and memories, shape (..., memory).
+        arguments
+            Of the kinks at the same travels and rates, where they are known.
+
+        Returns
+        -------
+        ElementForce
+            By row; what concerns a memory has the shape (..., memory), with the derivative of the row's force by it.
+        """
+        if arguments is None:
+            arguments = self.kinks.arguments(np.concatenate([given.travel, given.rate], axis=-1))
+        force, slopes = self.kinks.act(arguments)
+        by_travel, by_rate = slopes[..., : self.number], slopes[..., self.number :]
+        of_memories = [(given.memory[..., :0],) * 4]
+        for law, at, own, parameters in self.laws:
+            part = law.evaluate(parameters, _part(given, law, at, own))
+            force[..., at] += part.force
+            if law.has_memory:
+                of_memories.append((part.memory, part.by_memory, part.memory_by_travel, part.memory_by_memory))
+            else:
+                by_travel[..., at] += part.by_travel
+                by_rate[..., at] += part.by_rate
+        # Memories stand in the order of the laws; mostly one law has them all.
+        joined = (
+            of_memories[-1]
+            if len(of_memories) < 3
+            else (np.concatenate(p, axis=-1) for p in zip(*of_memories, strict=True))
+        )
+        memory, by_memory, memory_by_travel, memory_by_memory = joined
+        return ElementForce(force, memory, by_travel, by_rate, by_memory, memory_by_travel, memory_by_memory)
+
+
+def _part(given: ElementInput, law: ForceLaw, at: slice | Index, own: slice) -> ElementInput:
+    travel, rate, increment = given.travel[..., at], given.rate[..., at], given.increment[..., at]
+    return ElementInput(travel, rate, increment, given.memory[..., own] if law.has_memory else _NO_MEMORY)
 
 
 def _adjacent(positions: Sequence[int]) -> slice | Index:
@@ -383,14 +408,14 @@ class NonlinearModel:
         generator = np.zeros((size, size))
         generator[:state, :held] = length * state_matrix(rows, self.linear.massive)
         generator[state:held, held:] = np.eye(inputs)
-        change = np.zeros((len(slopes), size, size))
-        change[:, highest_derivatives(len(rows), self.linear.massive), :held] = length * slopes
-        # The exponential of [[Z, dZ], [0, Z]] holds that of Z and its derivative (Van Loan, IEEE TAC 23, 1978).
-        block = np.zeros((len(slopes), 2 * size, 2 * size))
-        block[:, :size, :size] = block[:, size:, size:] = generator
-        block[:, :size, size:] = change
-        exponential = np.asarray(expm(block))
-        return _as_step(exponential[0, :state, :size]), _as_step(exponential[:, :state, size:])
+        nodes, weights = np.polynomial.legendre.leggauss(_NODES)
+        way = np.asarray(expm(0.5 * (1.0 + nodes[:, None, None]) * generator))
+        # The derivative of exp(Z) is the integral of exp((1-s) Z) dZ exp(s Z) over s from 0 to 1; 1-s of a node is one, too.
+        at = highest_derivatives(len(rows), self.linear.massive)
+        left = (0.5 * length * weights[:, None, None] * way[::-1, :state, at]).transpose(1, 2, 0).reshape(state, -1)
+        right = np.einsum("pah,nhz->anpz", slopes, way[:, :held], optimize=True)
+        by_parameter = (left @ right.reshape(left.shape[1], -1)).reshape(state, len(slopes), size)
+        return _as_step(np.asarray(expm(generator))[:state]), _as_step(np.swapaxes(by_parameter, 0, 1))
 
 
 def _as_step(rows: Array) -> Array:

@@ -10,7 +10,6 @@ H. G. Bock, Springer Series in Chemical Physics 18 (1981) 102.
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
@@ -30,6 +29,8 @@ _MOST_PASSES = 9
 _CLOSED = 1e-6
 """Gap between segments, as a part of the largest state, that is none: less is below what the forces of a step are solved to."""
 
+_PROMISING = 1e-3
+"""Gap that the passes left would leave, if each reduced it as the last one did, up to which they are tried."""
 
 _NEARLY = 3e-5
 """Differences of forces, as a part of the largest, that are corrected without another evaluation."""
@@ -126,7 +127,7 @@ def integrate_near(
     slots, (kind, slot) = stepper.slots, stepper.places
     starts, state = near.starts.copy(), states.shape[1]
     starts[:, 0] = np.concatenate([states, memories], axis=1)
-    scale = np.maximum(np.abs(starts).max(axis=(0, 1)), np.finfo(float).tiny)
+    scale = _scale(starts, state // 2, state)
 
     def by_drop(values: Array) -> Array:
         """Return values (step, kind, slot · segment, column) as (drop, segment, step, column)."""
@@ -134,7 +135,7 @@ def integrate_near(
         return np.moveaxis(split, 0, 3)[kind, slot]
 
     similar = cut_into_segments(near.forces, steps_of_segments(number, length), slots)
-    error = 1.0
+    error = np.inf
     for left in reversed(range(_MOST_PASSES)):
         begin = starts[slots].reshape(len(slots), -1, starts.shape[2])
         motions, kept, surplus = stepper.follow(
@@ -156,8 +157,18 @@ def integrate_near(
             moving = np.swapaxes(np.concatenate(np.swapaxes(by_drop(surplus[1:]), 0, 1), axis=1)[:, :steps], 0, 1)
             moving = np.concatenate([np.zeros_like(moving[:1]), moving])
             return Trajectory(whole[..., :state], whole[..., state:-1], memory, moving)
-        # Further passes reduce the error as this one did.
-        if not math.log(error) + left * math.log(error / previous) <= math.log(_CLOSED):
+        # Further passes reduce it more than this one did, as the motions come nearer; what the first one leaves says little.
+        if not (error < 1 if np.isinf(previous) else error * (error / previous) ** left <= _PROMISING):
             break
         starts = starts + changes
     return stepper.integrate(states, memories, steps, similar=near.forces)
+
+
+def _scale(starts: Array, coordinates: int, state: int) -> Array:
+    """Return the largest displacement, velocity and memory of motions for each of theirs, shape (start,).
+
+    A coordinate that hardly moves need not be known to a part of its own motion; angles act at levers of about 1 m.
+    """
+    largest = np.abs(starts).max(axis=(0, 1))
+    parts = np.split(largest, [coordinates, state])
+    return np.concatenate([np.full_like(part, max(part.max(initial=0.0), np.finfo(float).tiny)) for part in parts])

@@ -15,8 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.vehicle.force_laws import ElementForce, ElementInput
-from sprung.vehicle.kinks import KinkForces
-from sprung.vehicle.nonlinear import NonlinearForces, NonlinearModel
+from sprung.vehicle.nonlinear import ForcesAt, NonlinearForces, NonlinearModel
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -123,14 +122,9 @@ class Stepper:
         )
 
     @cached_property
-    def parameters(self) -> tuple[Array, ...]:
-        """Parameters of the laws, each of shape (parameter, element)."""
-        return self.forces.parameters(self.values)
-
-    @cached_property
-    def kinks(self) -> KinkForces:
-        """Where the forces bend."""
-        return self.forces.kinks(self.values)
+    def forces_at(self) -> ForcesAt:
+        """The nonlinear elements with their parameters."""
+        return self.forces.at(self.values)
 
     @cached_property
     def has_surplus(self) -> bool:
@@ -314,21 +308,20 @@ class Stepper:
         """
         rows, memory_rows = force.shape[-1], self.forces.memory_rows
         earlier: tuple[Array, Array] | None = None
-        arguments = missing = None
+        missing = None
         for left in reversed(range(_MOST_EVALUATIONS)):
             inputs = predicted + force @ feedback.by_force
             if start is not None and self.has_surplus:
                 inputs += surplus @ feedback.by_surplus
             travel, rate = inputs[..., :rows], inputs[..., rows:]
             increment = np.zeros_like(travel) if start is None else travel - start.inputs[..., :rows]
-            found = self.forces.evaluate(self.parameters, ElementInput(travel, rate, increment, memories))
+            arguments = self.forces_at.kinks.arguments(inputs)
+            found = self.forces_at.evaluate(ElementInput(travel, rate, increment, memories), arguments)
             error = found.force - force
             size, largest = np.abs(error).max(initial=0.0), np.abs(found.force).max(initial=0.0)
-            if self.has_surplus:
-                arguments = self.kinks.arguments(inputs)
-                if start is not None:
-                    missing = self._surplus(start, inputs, arguments, found) - surplus
-                    size = max(size, _OWN_EFFECT * np.abs(missing).max(initial=0.0))
+            if self.has_surplus and start is not None:
+                missing = self._surplus(start, inputs, arguments, found) - surplus
+                size = max(size, _OWN_EFFECT * np.abs(missing).max(initial=0.0))
             if not left or not size > _SOLVED * largest:
                 surplus = surplus if missing is None else surplus + missing
                 return _End(found.force, found.memory, inputs, surplus, arguments, found)
@@ -350,8 +343,7 @@ class Stepper:
             if moved is not None:
                 memory = found.memory + found.memory_by_travel * moved[..., memory_rows]
                 moved += inputs
-                arguments = self.kinks.arguments(moved) if self.has_surplus else None
-                return _End(force, memory, moved, surplus, arguments, found)
+                return _End(force, memory, moved, surplus, self.forces_at.kinks.arguments(moved), found)
         raise AssertionError("the last evaluation returns")
 
     def _surplus(self, start: _End, inputs: Array, arguments: Array, end: ElementForce) -> Array:
@@ -380,8 +372,9 @@ class Stepper:
         surplus: Array = (start.slopes.by_rate + end.by_rate) * curved
         if end.by_travel.any():
             surplus -= (start.slopes.by_travel + end.by_travel) * (change[..., rows:] * (length / 12.0))
-        if len(self.kinks.rows) and start.arguments is not None:
-            surplus[..., self.kinks.rows] += self.kinks.forces(start.arguments, arguments)
+        kinks = self.forces_at.kinks
+        if len(kinks.rows):
+            surplus[..., kinks.rows] += kinks.surplus(start.arguments, arguments)
         return surplus
 
 
@@ -395,7 +388,7 @@ class _End(NamedTuple):
     inputs
         Travels and rates, shape (kind, slot, 2 row).
     arguments
-        Of the kinks; None where forces have no surplus.
+        Of the kinks, shape (kind, slot, kink).
     slopes
         Of the forces, where they were evaluated last.
     """
@@ -404,7 +397,7 @@ class _End(NamedTuple):
     memory: Array
     inputs: Array
     surplus: Array
-    arguments: Array | None
+    arguments: Array
     slopes: ElementForce
 
 
