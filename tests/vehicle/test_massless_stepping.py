@@ -46,6 +46,21 @@ def stepper(car: Vehicle, step: float, values: Array | None = None) -> Stepper:
     return Stepper.of([model], [step], np.zeros(1, dtype=np.int64), own if values is None else values)
 
 
+def test_dampers_behind_mounts_follow_fastest_where_they_are_softest() -> None:
+    """k_d/(c_s + c_d) in compression, where rebound is harder; rubber beside the springs is linear, and is stepped exactly."""
+    nonlinear = nonlinear_elements(WITH_REBOUND.tracks, WITH_REBOUND.extras)
+    names = tuple(WITH_REBOUND.parameters)
+    model = NonlinearModel.of(linear_elements(WITH_REBOUND.tracks, WITH_REBOUND.extras), nonlinear, names)
+    expected = max(
+        WITH_REBOUND.k_df / (WITH_REBOUND.c_sf + WITH_REBOUND.c_df),
+        WITH_REBOUND.k_dr / (WITH_REBOUND.c_sr + WITH_REBOUND.c_dr),
+    )
+    found = model.fastest_decay(np.array(list(WITH_REBOUND.parameters.values())))
+    assert found == pytest.approx(expected, rel=1e-9)
+    without = NonlinearModel.of(linear_elements(CAR.tracks, CAR.extras), nonlinear_elements(CAR.tracks, CAR.extras), names)
+    assert without.fastest_decay(np.array(list(WITH_REBOUND.parameters.values()))) == 0.0
+
+
 def rates_of_change(car: Vehicle, state: Array) -> Array:
     """Newton's equations, element by element; a damper with its rebound ratio extends as its mount pulls."""
     z, theta, phi, *wheels = state[:7]

@@ -30,6 +30,9 @@ _COARSE, _FINE, _FINEST = 0.0025, 0.00201, 0.00101
 order, as friction turns round within a step, or rates behind mounts jump.
 """
 
+_PER_DECAY, _SHORTEST = 0.5, 0.000251
+"""s of a step at most over the time in which a damper behind a mount follows where it is softest; and s that are enough."""
+
 _MOST_STEPS = 100
 
 _ON_THE_WAY = 1.0
@@ -104,7 +107,7 @@ def fit_nonlinear(
     progress(Step(f"fitting with {laws}, step by step through all drops"))
     known = statements_of(known, sensors, next(iter(models.values())).names)
     steps, values = 0, expected_nuisances(known) | dict(start)
-    fine = _longest_step(models)
+    fine = _longest_step(models, values)
     # What a low-pass makes of a friction that turns round depends on when it does: its corner is found by fits to beginnings.
     stages = (
         [
@@ -181,7 +184,7 @@ def score_stepped_terms(
         states,
         tilting,
         low_pass,
-        _COARSE if low_pass is None else _longest_step(models),
+        _COARSE if low_pass is None else _longest_step(models, values),
     )
     problem = _problem(objective, known, values)
     names, priors = problem.priors.coordinates.names, problem.priors
@@ -209,9 +212,12 @@ def score_stepped_terms(
     return gains
 
 
-def _longest_step(models: Mapping[str, NonlinearModel]) -> float:
+def _longest_step(models: Mapping[str, NonlinearModel], values: Mapping[str, float]) -> float:
+    """Return how long a step may be, s, so that its error is not taken for anything else."""
     model = next(iter(models.values()))
-    return _FINEST if model.forces.memories or model.linear.massive < model.linear.size else _FINE
+    least = _FINEST if model.forces.memories or model.linear.massive < model.linear.size else _FINE
+    decay = model.fastest_decay(np.array([values[name] for name in model.names]))
+    return least if decay * least <= _PER_DECAY else max(_PER_DECAY / decay, _SHORTEST)
 
 
 def _objective(

@@ -29,6 +29,9 @@ Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
 
+_FAST = 2.0
+"""Rate of dampers beyond all their knees, m/s."""
+
 _NODES = 12
 """Of Gauss-Legendre quadrature over a step: exact to 1e-7 for decays of ten times the step's inverse, to rounding for usual."""
 
@@ -331,6 +334,22 @@ class NonlinearModel:
         loaded, gravity, sag = self.linear.matrices(values), self.linear.heave * self.gravity, self.sag(values)
         change = self.load.slopes(values).M @ gravity + self.linear.slopes(values).K @ sag
         return sag, -loaded.deflection(change.T)
+
+    def fastest_decay(self, values: Array) -> float:
+        """Return how fast dampers behind mounts follow where they are softest, 1/s; 0 where forces on them are linear."""
+        m, matrices = self.linear.massive, self.linear.matrices(values)
+        G, directions = self.forces.rows.at(values)[:, m:], self.forces.directions(values)[:, m:]
+        behind = G.any(axis=0)
+        if not behind.any():
+            return 0.0
+        at, none, still = self.forces.at(values), np.zeros(self.forces.memories), np.zeros(self.forces.number)
+        stiffness, linear = (part[m:, m:][behind][:, behind] for part in (matrices.K, matrices.C))
+        decays = []
+        for rate in (-_FAST, _FAST):
+            slopes = at.evaluate(ElementInput(still, still + rate, still, none)).by_rate
+            damping = linear + ((directions.T * slopes) @ G)[behind][:, behind]
+            decays.append(float(np.abs(np.linalg.eigvals(np.linalg.pinv(damping) @ stiffness)).max()))
+        return max(decays)
 
     def accelerations(self, values: Array) -> tuple[Array, Array]:
         """Return the highest derivatives as a linear function of {X, Ẋ, u, 1}, u being the forces, and its derivatives.
