@@ -57,7 +57,9 @@ def test_dampers_behind_mounts_follow_fastest_where_they_are_softest() -> None:
     )
     found = model.fastest_decay(np.array(list(WITH_REBOUND.parameters.values())))
     assert found == pytest.approx(expected, rel=1e-9)
-    without = NonlinearModel.of(linear_elements(CAR.tracks, CAR.extras), nonlinear_elements(CAR.tracks, CAR.extras), names)
+    without = NonlinearModel.of(
+        linear_elements(CAR.tracks, CAR.extras), nonlinear_elements(CAR.tracks, CAR.extras), names
+    )
     assert without.fastest_decay(np.array(list(WITH_REBOUND.parameters.values()))) == 0.0
 
 
