@@ -215,9 +215,9 @@ def score_stepped_terms(
 def _longest_step(models: Mapping[str, NonlinearModel], values: Mapping[str, float]) -> float:
     """Return how long a step may be, s, so that its error is not taken for anything else."""
     model = next(iter(models.values()))
-    least = _FINEST if model.forces.memories or model.linear.massive < model.linear.size else _FINE
+    longest = _FINEST if model.forces.memories or model.linear.massive < model.linear.size else _FINE
     decay = model.fastest_decay(np.array([values[name] for name in model.names]))
-    return least if decay * least <= _PER_DECAY else max(_PER_DECAY / decay, _SHORTEST)
+    return max(longest / max(1.0, longest * decay / _PER_DECAY), _SHORTEST)
 
 
 def _objective(

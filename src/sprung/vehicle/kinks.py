@@ -69,12 +69,10 @@ class KinkForces:
 
     Attributes
     ----------
-    rows
-        Rows of travels with a kink, ascending, shape (kinked row,).
     row_of
-        Row of each kink as a position among these, shape (kink,).
+        Row of each kink, shape (kink,).
     number
-        Of all rows.
+        Of rows.
     kinks
         Shape (kink,) each.
     laws
@@ -84,7 +82,6 @@ class KinkForces:
         How many parameters all laws have.
     """
 
-    rows: Index
     row_of: Index
     number: int
     kinks: Kinks
@@ -101,8 +98,7 @@ class KinkForces:
             found = np.array(kinks_of(parameters))
             parts.append(found.reshape(5, -1))
             on.append(np.tile(at, found.shape[1]))
-        rows, row_of = np.unique(np.concatenate(on), return_inverse=True)
-        return cls(rows, row_of, number, Kinks(*np.concatenate(parts, 1)), laws, of_laws)
+        return cls(np.concatenate(on), number, Kinks(*np.concatenate(parts, 1)), laws, of_laws)
 
     @cached_property
     def slopes(self) -> Kinks:
@@ -121,28 +117,26 @@ class KinkForces:
     def _of_inputs(self) -> Array:
         """Arguments of the kinks by travels and rates of all rows, shape (2 row, kink)."""
         found, kink = np.zeros((2 * self.number, len(self.row_of))), np.arange(len(self.row_of))
-        found[self.rows[self.row_of], kink] = self.kinks.by_travel
-        found[self.number + self.rows[self.row_of], kink] = self.kinks.by_rate
+        found[self.row_of, kink] = self.kinks.by_travel
+        found[self.number + self.row_of, kink] = self.kinks.by_rate
         return found
+
+    @cached_property
+    def _is_on_row(self) -> NDArray[np.bool_]:
+        """Whether each kink is on each row, shape (kink, row)."""
+        is_on_row: NDArray[np.bool_] = self.row_of[:, None] == np.arange(self.number)
+        return is_on_row
 
     @cached_property
     def _by_hinge(self) -> Array:
         """Force of each row by how far arguments are above their positions, shape (kink, row)."""
-        found = np.zeros((len(self.row_of), self.number))
-        found[np.arange(len(found)), self.rows[self.row_of]] = self.kinks.jump
-        return found
+        return np.where(self._is_on_row, self.kinks.jump[:, None], 0.0)
 
     @cached_property
     def _by_slope(self) -> Array:
         """Slopes of each row's force by its travel and its rate, by which arguments are above, shape (kink, 2 row)."""
         by_input = self.kinks.by_travel[:, None], self.kinks.by_rate[:, None]
         return np.hstack([factor * self._by_hinge for factor in by_input])
-
-    @cached_property
-    def _collect(self) -> Array:
-        """1 for the row of each kink, shape (kink, kinked row)."""
-        collect: Array = (self.row_of[:, None] == np.arange(len(self.rows))).astype(np.float64)
-        return collect
 
     @cached_property
     def _is_rounded(self) -> NDArray[np.bool_]:
@@ -166,15 +160,11 @@ class KinkForces:
 
     def lie_between(self, one: Array, other: Array) -> NDArray[np.bool_]:
         """Return in which rows a kink lies between two inputs, shape (..., 2 row): travels and rates of all rows."""
-        passed, found = (
-            self.arguments(one) * self.arguments(other) < 0,
-            np.zeros((*one.shape[:-1], self.number), dtype=bool),
-        )
-        found[..., self.rows] = passed @ (self._collect > 0)
-        return found
+        passed: NDArray[np.bool_] = self.arguments(one) * self.arguments(other) < 0
+        return np.asarray(passed @ self._is_on_row)
 
     def surplus(self, before: Array, after: Array) -> Array:
-        """Return the additions to the force at the end of a step, N, shape (..., kinked row).
+        """Return the additions to the force at the end of a step, N, shape (..., row).
 
         Parameters
         ----------
@@ -185,7 +175,7 @@ class KinkForces:
         if self._is_rounded.any():
             at = self._is_rounded
             excess[..., at] = _mean_rounded(before[..., at], after[..., at], self.kinks.width[at])[0]
-        found: Array = excess @ (self.kinks.jump[:, None] * self._collect)
+        found: Array = excess @ self._by_hinge
         return found
 
     def add_surplus_slopes(
@@ -214,7 +204,7 @@ class KinkForces:
                 (excess, by_u, by_v, by_width), _mean_rounded(u[at], v[at], kinks.width[at]), strict=True
             ):
                 whole[at] = part
-        row = self.rows[self.row_of[kink]]
+        row = self.row_of[kink]
         of_parameters = excess[:, None] * slopes.jump + (kinks.jump * by_width)[:, None] * slopes.width
         for by_argument, inputs, total in ((by_u, before, by_before), (by_v, after, by_after)):
             by_end = by_argument * kinks.jump

@@ -372,9 +372,7 @@ class Stepper:
         surplus: Array = (start.slopes.by_rate + end.by_rate) * curved
         if end.by_travel.any():
             surplus -= (start.slopes.by_travel + end.by_travel) * (change[..., rows:] * (length / 12.0))
-        kinks = self.forces_at.kinks
-        if len(kinks.rows):
-            surplus[..., kinks.rows] += kinks.surplus(start.arguments, arguments)
+        surplus += self.forces_at.kinks.surplus(start.arguments, arguments)
         return surplus
 
 
