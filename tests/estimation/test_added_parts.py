@@ -7,7 +7,7 @@ import pytest
 
 import sprung
 from sprung.campaign import Campaign
-from sprung.estimation import FitResult, expected_ends, fit_linear, readout_of, score_linear_term, score_linear_terms
+from sprung.estimation import FitResult, fit_linear, readout_of, score_linear_term, score_linear_terms
 from sprung.estimation.eliminated_coordinates import eliminate_coordinates
 from sprung.estimation.modal_solution import differentiate_response, solve_modes
 from sprung.preprocess import FreeDecay, prepare
@@ -90,20 +90,3 @@ def test_a_part_that_is_there_gains_as_its_own_model_says(
         ((own, _),) = score_linear_term(optimum, larger.linear_models, campaign.sensors, larger.known, [start])
         assert own > 100
         assert gains[term] == pytest.approx(own, rel=tolerance)
-
-
-def test_where_a_fit_would_end_is_known_before(
-    campaign: Campaign, decays: tuple[FreeDecay, ...], plain: ModelStructure, optimum: FitResult
-) -> None:
-    """Two variants of the drops: all of them, whose fit has ended, and the first four, which would move on."""
-    other = fit_linear(
-        decays[:4], plain.linear_models, campaign.sensors, plain.known, start=optimum.parameters, enough=1e-10
-    )
-    (_, at_the_end), (few, gain) = expected_ends(optimum, (decays, decays[:4]))
-    assert at_the_end < 1e-4
-    assert gain > 1
-    there = optimum.residual_sums_of(decays[:4]).sum(axis=0)
-    counts = other.problem.objective.observations.sum(axis=0)
-    here = -float(counts @ np.log(there / counts))
-    reached = -float(counts @ np.log(other.residual_sums.sum(axis=0) / counts))
-    assert few - here == pytest.approx(reached - here, rel=0.1)

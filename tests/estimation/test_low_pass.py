@@ -12,7 +12,7 @@ RATE = 500.0
 LOGGER = LowPass(80.0, 4)
 
 
-@pytest.mark.parametrize(("order", "frequency"), [(1, 2.0), (2, 12.0), (4, 1.5), (4, 12.0), (4, 30.0)])
+@pytest.mark.parametrize(("order", "frequency"), [(1, 2.0), (2, 12.0), (4, 1.5), (4, 30.0), (4, 80.0), (4, 150.0)])
 def test_signals_pass_it_as_its_response_says(order: int, frequency: float) -> None:
     low_pass = LowPass(80.0, order)
     sampled = SampledLowPass.of(low_pass, 1000.0)
@@ -20,8 +20,8 @@ def test_signals_pass_it_as_its_response_says(order: int, frequency: float) -> N
     found = sampled.filtered(np.sin(2 * np.pi * frequency * time)[None], axis=1)[0]
     response = low_pass.response(np.array([2j * np.pi * frequency]))[0]
     expected = abs(response) * np.sin(2 * np.pi * frequency * (time + sampled.lag / 1000) + np.angle(response))
-    # The bilinear transformation shifts frequencies by a part of (π f / rate)² / 3 only.
-    np.testing.assert_allclose(found[300:-50], expected[300:-50], atol=5e-3)
+    # The numerator has one coefficient more than the order, by least squares up to 400 Hz: what is left falls with the order.
+    np.testing.assert_allclose(found[300:-50], expected[300:-50], atol={1: 5e-3, 2: 1e-3, 4: 2e-4}[order])
     assert sampled.lag == round(low_pass.delay * 1000)
 
 

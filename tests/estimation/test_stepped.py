@@ -214,6 +214,20 @@ def test_what_is_lost_without_a_term_does_not_depend_on_how_well_the_scale_is_kn
     assert lost[0.1] == pytest.approx(lost[0.001], rel=1e-3)
 
 
+def test_what_nothing_determines_may_have_any_value() -> None:
+    """Where nothing is weighed, half as much again is as likely a mass; its place is known to 0.3 %.
+
+    Rounding is taken for information: a part of 1e-12 of the largest, which is some 1e8.
+    """
+    drops = [{"wheels": wheels} for wheels in (("fl", "fr"), ("fl", "rl"))]
+    unweighed = sprung.simulate(TABLE_1_CAR, drops=drops, noise=0.02, seed=4)
+    structure = choose_structure(unweighed, "shared", ())
+    start = dict(TABLE_1_CAR.parameters)
+    found = fit_linear(prepare(unweighed).decays, structure.linear_models, unweighed.sensors, {}, start=start)
+    assert wald_test(found, [("m_s", 1.5 * found.parameters["m_s"])]) < 0.1
+    assert wald_test(found, [("a", 1.1 * found.parameters["a"])]) > 100
+
+
 def test_a_usual_value_is_no_weighing() -> None:
     """A prior on the rates of bars says nothing of the masses; a statement about one of them does."""
     barred = Vehicle.from_parameters(TABLE_1_CAR.parameters | {"k_af": 2000.0, "k_ar": 2000.0})

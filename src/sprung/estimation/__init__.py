@@ -16,7 +16,7 @@ from sprung.estimation.estimates import (
     to_estimates,
     unidentifiable_combinations,
 )
-from sprung.estimation.fit_result import FitResult, expected_ends
+from sprung.estimation.fit_result import FitResult
 from sprung.estimation.linear_fit import NEAR, STARTS, escape_local_optimum, fit_linear, weigh_statements
 from sprung.estimation.linear_scores import score_linear_term, score_linear_terms
 from sprung.estimation.low_pass import HIGHEST_CORNER, LowPass, SampledLowPass, unexplained_squares
@@ -87,7 +87,6 @@ __all__ = [
     "escape_local_optimum",
     "estimate_of",
     "estimate_quantity",
-    "expected_ends",
     "fit_from_contact",
     "fit_from_start",
     "fit_jointly",

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from sprung.estimation.objective import ObjectiveAt
 from sprung.estimation.overdispersion import autocorrelation_inflation, birge_ratio, drop_corrections
-from sprung.estimation.problem import EstimationProblem, Iterate, identifiable_equations
+from sprung.estimation.problem import EstimationProblem, Iterate
 from sprung.preprocess import FreeDecay, Moments, SensorNoise, estimate_sensor_noise, pool_moments
 from sprung.vehicle import is_of_sensor
 
@@ -258,34 +258,6 @@ class FitResult:
         """Return this fit with the history of the one before, from which it was reached."""
         steps = before.steps + self.steps
         return replace(self, steps=steps, starts=before.starts, starts_agreeing=before.starts_agreeing)
-
-
-def expected_ends(fit: FitResult, variants: Sequence[Sequence[FreeDecay]]) -> list[tuple[float, float]]:
-    """Return where fits of several variants of drops would end that begin where another fit ended.
-
-    Parameters
-    ----------
-    fit
-        The other one.
-    variants
-        The decays in each of them, of the same vehicle and sensors.
-
-    Returns
-    -------
-    list of tuple
-        Twice the log-likelihood after one Newton step, to second order and up to a constant, and what the step gains of it.
-    """
-    problem, bounds = fit.problem, np.cumsum([len(decays) for decays in variants])[:-1]
-    objective = problem.objective.with_decays([decay for decays in variants for decay in decays])
-    at = objective.at(fit.values, fit.weights)
-    parts = (np.split(of_drops, bounds) for of_drops in (objective.observations, at.residual_sums, *at.by_drop))
-    ends = []
-    for own in zip(*parts, strict=True):
-        counts, sums, gradient, information = (of_drops.sum(axis=0) for of_drops in own)
-        equations = identifiable_equations(*problem.joint_system(fit.iterate, information, gradient))
-        variance, gain = sums / np.maximum(counts, 1.0) + problem.least_variance, equations.step()[1]
-        ends.append((gain - float(counts @ np.log(variance)), gain))
-    return ends
 
 
 def _centred(record: Real) -> Real:

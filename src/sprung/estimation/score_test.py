@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from sprung.estimation.elimination import eliminate
 from sprung.estimation.fit_result import FitResult
 from sprung.estimation.priors import scaling_direction
-from sprung.estimation.problem import identifiable_equations, identifiable_subspace
+from sprung.estimation.problem import RANK, identifiable_equations, identifiable_subspace
 from sprung.vehicle import evaluate_quantity, is_of_sensor
 
 Real = NDArray[np.float64]
@@ -219,9 +219,11 @@ def wald_test(fit: FitResult, constraints: Sequence[tuple[str, str | float]]) ->
             away[i] = coordinates.distance(u, name, value)
     at_any_scale = np.array([isinstance(value, str) or value == 0 or np.isinf(value) for _, value in constraints])
     rows = np.where(at_any_scale[:, None], per_total_mass(fit, rows), rows)
-    equations = fit.problem.normal_equations(fit.iterate)
-    along = rows @ equations.directions
-    covariance = along @ np.linalg.solve(equations.information, along.T)
+    information, _, null_space = fit.problem.system(fit.iterate)
+    eigenvalues, vectors = np.linalg.eigh(information)
+    along = rows @ null_space @ vectors
+    # What records and priors do not determine may have any value without a loss.
+    covariance = along / np.maximum(eigenvalues, RANK * float(eigenvalues.max(initial=0.0))) @ along.T
     return float(away @ np.linalg.pinv(covariance) @ away)
 
 

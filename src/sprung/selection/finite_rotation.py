@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.estimation import NEAR, FitResult, expected_ends
+from sprung.estimation import NEAR, FitResult
 from sprung.preprocess import FreeDecay
 from sprung.selection.search import ModelSearch
 from sprung.selection.starts import fit_structure, start_values, thinned
@@ -39,9 +39,6 @@ all samples up to which that saves anything."""
 _FIRST_ITERATIONS = 2
 """Iterations after which there has to be a gain: the optimum moves by a few standard errors only."""
 
-
-_NEAR_BY = 100.0
-"""Expected gain in twice the log-likelihood, the distance in standard errors squared, up to which that is quadratic."""
 
 _FEW, _BODY = 4, 2 * np.pi * 1.5
 """Drops that are enough for that, and usual own frequency of the body, 1/s."""
@@ -109,10 +106,7 @@ def _drops_that_turn_most(fit: FitResult) -> list[int]:
 
 
 def _loses_much(search: ModelSearch, assumption: _Assumption, drops: Sequence[int]) -> bool:
-    """Whether the correction loses so much in a part of the samples that it cannot gain in all of them.
-
-    As far as the likelihood is quadratic, what the parameters may gain back follows without any fit.
-    """
+    """Whether the correction loses so much in a part of the samples that it cannot gain in all of them."""
     decays = [search.decays[drop] for drop in drops]
     thin, part = thinned(decays, _RATE, np.inf)
     if part > _PART:
@@ -123,8 +117,11 @@ def _loses_much(search: ModelSearch, assumption: _Assumption, drops: Sequence[in
         for drop, decay, one in zip(drops, decays, thin, strict=True)
     ]
     corrected = _without_rotation(structure, fit, thin, motions)
-    (before, _), (after, gain) = expected_ends(fit, (thin, corrected))
-    return gain < _NEAR_BY and after - before < -search.required_of_switch
+    before, after = (
+        fit_structure(own, decays, fit, NEAR, search.progress, most=_FIRST_ITERATIONS).loglikelihood
+        for own, decays in ((search.structure, thin), (structure, corrected))
+    )
+    return 2 * (after - before) < -search.required_of_switch
 
 
 def _corrected(

@@ -24,6 +24,9 @@ _CORNER, _RATIO = 100.0, 1.6
 _SAME = 0.05
 """Relative difference of corners that is none in practice."""
 
+_NARROW, _FINE = 0.25, 0.02
+"""Logarithm of the ratio of corners between which the gain is a parabola, and of one from the best to be compared as well."""
+
 _OPEN = LowPass(np.inf, _ORDER)
 """That of a logger without one: its motions are stepped as finely as those before another one."""
 
@@ -92,7 +95,27 @@ def _likeliest_corner(search: ModelSearch, first: float, ratio: float) -> float 
         # Where one that is too low only loses, a higher one is tried, and then none.
         lower = [best / ratio] * (best == min(gains) and gains[best] > 0)
         waiting = lower + [best * ratio] * (best == max(gains) and (gains[best] > 0 or len(gains) == 1))
-    return _vertex(gains) if max(gains.values(), default=0.0) > search.required_of_switch else None
+    if not max(gains.values(), default=0.0) > search.required_of_switch:
+        return None
+    while (between := _between(gains)) is not None:
+        behind = replace(structure, low_pass=LowPass(between, _ORDER))
+        gains[between] = search.refit(behind, _ITERATIONS, beginning_only=True).gain_over(without)
+    return _vertex(gains)
+
+
+def _between(gains: Mapping[float, float]) -> float | None:
+    """Return the corner that is compared next, between the neighbours of the best one; None where these are near to it."""
+    corners = sorted(gains)
+    at = corners.index(max(corners, key=lambda corner: gains[corner]))
+    if not 0 < at < len(corners) - 1:
+        return None
+    below, best, above = corners[at - 1 : at + 2]
+    if np.log(above / below) < _NARROW:
+        return None
+    corner = _vertex(gains)
+    if abs(np.log(corner / best)) > _FINE:
+        return corner
+    return float(np.sqrt(best * (below if best**2 > above * below else above)))
 
 
 def _vertex(gains: Mapping[float, float]) -> float:

@@ -97,15 +97,14 @@ def select_further_terms(search: ModelSearch) -> ModelSearch:
         if search.structure is before.structure:
             if not search.is_overdispersed:
                 break
-            # A low-pass resembles knees, and so does whatever else is missing: it is looked for once nothing else shows.
-            search = select_low_pass(search)
+            search = _accept_low_pass(search, _hidden(_untried(search, tried)))
         if search.structure is before.structure:
             # What the likeliest of them beats may be needed beside it: it is tried again in the next round.
             search = _accept_rival(search, _rivals(_untried(search, tried)))
         if search.structure is before.structure:
-            # A friction that a fit of everything at once had lost shows in no score, but once the rest is right. Beside it what
-            # was refused without it may be needed.
-            search = _accept_rival(search, [term for term in _untried(search, tried) if TERMS[term].resembles_others])
+            search = _accept_rival(search, _hidden(_untried(search, tried)))
+        if _hidden(search.structure.terms) != _hidden(before.structure.terms):
+            # What was refused without it may be needed beside it.
             tried = frozenset()
         if search.structure is before.structure:
             break
@@ -133,6 +132,23 @@ def _accept_rival(search: ModelSearch, terms: Sequence[str]) -> ModelSearch:
     """Fit terms that no score tells from each other, and accept the likeliest if it is needed."""
     found = try_likeliest(search, terms) if terms else search
     return found if found.structure is search.structure else confirm_low_pass(found)
+
+
+def _accept_low_pass(search: ModelSearch, hidden: Sequence[str]) -> ModelSearch:
+    """Accept a low-pass of the loggers if the recordings support one, unless a term that shows in no score explains more.
+
+    A low-pass resembles knees, and so does whatever else is missing: it is looked for once nothing else shows.
+    """
+    found = select_low_pass(search)
+    if found.structure is search.structure:
+        return search
+    other = _accept_rival(search, hidden)
+    return other if other.gain_over(found) > 0 else found
+
+
+def _hidden(terms: Sequence[str]) -> list[str]:
+    """Return the terms that show in no score once a fit of everything at once has lost them, but when the rest is right."""
+    return [term for term in terms if TERMS[term].resembles_others]
 
 
 def _rivals(terms: Sequence[str]) -> list[str]:

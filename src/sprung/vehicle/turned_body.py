@@ -118,18 +118,17 @@ class TurnedBody:
         damped = (
             wheels if np.array_equal(self.dampers.y, wheels.y) else self._displaced_wheels(turned, motion, self.dampers)
         )
-        centre = self._centre(turned, wheels)
+        aside, items_aside = (turned.horizontal_accelerations(points) for points in (wheels, self.items))
+        centre = self._centre(aside, items_aside)
         # Wheels move sideways with the body, and slide along its axis.
-        push = wheels.mass[:, None] * (turned.horizontal_places(wheels)[:, _SECOND] - centre)
+        push = wheels.mass[:, None] * (aside - centre)
         spring = self.preload[:, None] + self.springs.rate @ (wheels.h[_VALUE] - self.wheels.h[:, None])
         damper = self.dampers.rate @ damped.h[_RATE]
         forces[1:BODY] += turned.horizontal_moments(wheels, push)
         forces += turned.travel_forces(wheels, spring + turned.along_axis(push)) + turned.travel_forces(damped, damper)
         # Items move in all directions, and have weight.
         mass = self.items.mass[:, None]
-        forces[1:BODY] += turned.horizontal_moments(
-            self.items, mass * (turned.horizontal_places(self.items)[:, _SECOND] - centre)
-        )
+        forces[1:BODY] += turned.horizontal_moments(self.items, mass * (items_aside - centre))
         lifted = mass * (turned.height(motion, self.items)[_SECOND] + STANDARD_GRAVITY)
         forces[:BODY] += turned.lift_forces(self.items, lifted)
         return forces
@@ -137,9 +136,10 @@ class TurnedBody:
     def _readings(self, motion: Array, points: Points) -> Array:
         turned = _Turned.of(motion, self.tilt)
         wheels = self._displaced_wheels(turned, motion, self.springs)
-        aside = np.concatenate([turned.horizontal_places(one)[:, _SECOND] for one in (points, wheels)], axis=1)
+        on_body, aside, items_aside = (turned.horizontal_accelerations(one) for one in (points, wheels, self.items))
         lifted = np.concatenate([turned.height(motion, points)[_SECOND], motion[_SECOND, BODY:]]) + STANDARD_GRAVITY
-        readings: Array = turned.along_axis(aside - self._centre(turned, wheels)) + turned.upright[_VALUE] * lifted
+        freely = np.concatenate([on_body, aside], axis=1) - self._centre(aside, items_aside)
+        readings: Array = turned.along_axis(freely) + turned.upright[_VALUE] * lifted
         return readings
 
     @cached_property
@@ -157,12 +157,13 @@ class TurnedBody:
         above = motion[:, BODY:] + self._turned_at_rest.height(_AT_REST, wheels) - level
         return wheels._replace(h=_product(above, turned.upright_reciprocal))
 
-    def _centre(self, turned: _Turned, wheels: Points) -> Array:
-        """Return the horizontal acceleration of the common centre from the body's centre of gravity, shape (2, 1, time)."""
-        moved = [
-            np.einsum("p,apt->at", one.mass, turned.horizontal_places(one)[:, _SECOND]) for one in (wheels, self.items)
-        ]
-        centre: Array = (moved[0] + moved[1])[:, None] / self.mass
+    def _centre(self, wheels: Array, items: Array) -> Array:
+        """Return the horizontal acceleration of the common centre, shape (2, 1, time), from those of wheels and items.
+
+        All from the body's centre of gravity.
+        """
+        moved = self.wheels.mass @ wheels + self.items.mass @ items
+        centre: Array = moved[:, None] / self.mass
         return centre
 
 
@@ -191,24 +192,35 @@ class _Turned:
     def upright_reciprocal(self) -> Array:
         """One over it."""
         value, rate, second = self.upright
-        return np.stack([1 / value, -rate / value**2, (2 * rate**2 / value - second) / value**2])
+        inverse = 1 / value
+        return np.array([inverse, -rate * inverse**2, (2 * rate**2 * inverse - second) * inverse**2])
 
     @cached_property
     def forward(self) -> Array:
         """Part of the body's axis that points forward."""
         return _product(self.sin_pitch, self.cos_roll)
 
+    @cached_property
+    def leftward(self) -> Array:
+        """Vertical part of the body's axis that points to the left."""
+        return _product(self.cos_pitch, self.sin_roll)
+
+    @cached_property
+    def _sideways(self) -> Array:
+        """Second derivative of that axis' part forward."""
+        return _second_of_product(self.sin_pitch, self.sin_roll)
+
     def height(self, motion: Array, points: Points) -> Array:
         """Height above that of the centre of gravity at rest, (3, point, time)."""
-        rolled = points.y[:, None] * _product(self.cos_pitch, self.sin_roll)
+        rolled = points.y[:, None] * self.leftward
         above: Array = motion[:, :1] - points.x[:, None] * self.sin_pitch + rolled + _scaled(points.h, self.upright)
         return above
 
-    def horizontal_places(self, points: Points) -> Array:
-        """Places forward and to the left of the centre of gravity, (2, 3, point, time)."""
+    def horizontal_accelerations(self, points: Points) -> Array:
+        """Accelerations forward and to the left, from the centre of gravity's, (2, point, time)."""
         x, y = points.x[:, None], points.y[:, None]
-        forward = x * self.cos_pitch + y * _product(self.sin_pitch, self.sin_roll) + _scaled(points.h, self.forward)
-        return np.stack([forward, y * self.cos_roll - _scaled(points.h, self.sin_roll)])
+        up = [_second_of_scaled(points.h, axis) for axis in (self.forward, self.sin_roll)]
+        return np.array([x * self.cos_pitch[_SECOND] + y * self._sideways + up[0], y * self.cos_roll[_SECOND] - up[1]])
 
     def along_axis(self, force: Array) -> Array:
         """Part along the body's axis of horizontal forces (2, point, time)."""
@@ -221,13 +233,13 @@ class _Turned:
         x, sin, cos = points.x[:, None], self.sin_pitch[_VALUE], self.cos_pitch[_VALUE]
         pitch = (up * cos - x * sin) * force[0]
         roll = sin * aside * force[0] - up * force[1]
-        return np.stack([pitch.sum(axis=0), roll.sum(axis=0)])
+        return np.array([pitch.sum(axis=0), roll.sum(axis=0)])
 
     def lift_forces(self, points: Points, force: Array) -> Array:
         """Generalised forces on bounce, pitch and roll of vertical forces (point, time)."""
         aside, up = self._pitched_places(points)
         pitch = -(points.x[:, None] * self.cos_pitch[_VALUE] + up * self.sin_pitch[_VALUE]) * force
-        return np.stack([one.sum(axis=0) for one in (force, pitch, self.cos_pitch[_VALUE] * aside * force)])
+        return np.array([one.sum(axis=0) for one in (force, pitch, self.cos_pitch[_VALUE] * aside * force)])
 
     def travel_forces(self, wheels: Points, force: Array) -> Array:
         """Generalised forces of forces (wheel, time) along the body's axis on wheels that slide along it."""
@@ -250,8 +262,15 @@ class _Turned:
 
 def _product(one: Array, other: Array) -> Array:
     """Return the product of two signals, by Leibniz's rule."""
-    second = one[_SECOND] * other[_VALUE] + 2 * one[_RATE] * other[_RATE] + one[_VALUE] * other[_SECOND]
-    return np.stack([one[_VALUE] * other[_VALUE], one[_RATE] * other[_VALUE] + one[_VALUE] * other[_RATE], second])
+    product: Array = one * other[_VALUE]
+    product[_RATE] += one[_VALUE] * other[_RATE]
+    product[_SECOND] += 2 * one[_RATE] * other[_RATE] + one[_VALUE] * other[_SECOND]
+    return product
+
+
+def _second_of_product(one: Array, other: Array) -> Array:
+    second: Array = one[_SECOND] * other[_VALUE] + 2 * one[_RATE] * other[_RATE] + one[_VALUE] * other[_SECOND]
+    return second
 
 
 def _scaled(h: Array, signal: Array) -> Array:
@@ -259,9 +278,13 @@ def _scaled(h: Array, signal: Array) -> Array:
     return _product(h, signal) if h.ndim == 3 else h[:, None] * signal
 
 
+def _second_of_scaled(h: Array, signal: Array) -> Array:
+    return _second_of_product(h, signal) if h.ndim == 3 else h[:, None] * signal[_SECOND]
+
+
 def _sine_and_cosine(angle: Array, from_level: float) -> tuple[Array, Array]:
     """Return both of an angle at rest and a signal of its change."""
     sin, cos = np.sin(from_level + angle[_VALUE]), np.cos(from_level + angle[_VALUE])
     rate, second = angle[_RATE], angle[_SECOND]
-    sine = np.stack([sin, cos * rate, cos * second - sin * rate**2])
-    return sine, np.stack([cos, -sin * rate, -sin * second - cos * rate**2])
+    sine = np.array([sin, cos * rate, cos * second - sin * rate**2])
+    return sine, np.array([cos, -sin * rate, -sin * second - cos * rate**2])
