@@ -190,3 +190,12 @@ def test_a_body_that_turns_far_is_no_brake() -> None:
     outcome = examine(campaign, truth, 300.0)
     assert (outcome.verdict, outcome.faults) == ("accept", ())
     assert outcome.worst_scaled[0] < 4
+
+
+@pytest.mark.long
+def test_a_part_that_made_up_for_finite_rotation_is_not_subtracted_from_the_recordings() -> None:
+    """People of half a kilogram on seats that drive them: their motion grew, and what it seemed to turn was subtracted."""
+    ((campaign, truth),) = record([draw_test("tall", 4)])
+    outcome = examine(campaign, truth, 300.0)
+    assert (outcome.verdict, outcome.model, outcome.faults) == ("accept", ("anti-roll", "gravity"), ())
+    assert outcome.worst_scaled[0] < 4

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.uncertainty import KnownValue
-from sprung.vehicle import evaluate_quantity, layout_of, parameter_of
+from sprung.vehicle import evaluate_quantities, evaluate_quantity, layout_of, parameter_of
 
 Real = NDArray[np.float64]
 
@@ -191,10 +191,10 @@ class PriorsAndConstraints:
             return np.zeros(0), np.zeros((0, len(u)))
         values = self.coordinates.values(u)
         derivatives = np.where(self.coordinates.is_logarithmic, values, self.coordinates.references)
-        found = [evaluate_quantity(name, self.coordinates.names, values) for name in names]
-        rows = np.array([gradient for _, gradient in found]) * derivatives
+        found, gradients = evaluate_quantities(names, self.coordinates.names, values)
+        rows = gradients * derivatives
         sizes = np.where(sizes > 0, sizes, np.linalg.norm(rows, axis=1))  # nothing is a part of zero
-        return (known - np.array([value for value, _ in found])) / sizes, rows / sizes[:, None]
+        return (known - found) / sizes, rows / sizes[:, None]
 
     def residuals(self, u: Real) -> tuple[Real, Real]:
         """Return residuals of the uncertain statements and of the usual values, and their derivatives.

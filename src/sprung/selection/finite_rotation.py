@@ -19,6 +19,7 @@ from sprung.selection.search import ModelSearch
 from sprung.selection.starts import fit_structure, start_values, thinned
 from sprung.selection.stepwise import select_linear_terms
 from sprung.selection.structure import ModelStructure
+from sprung.selection.terms import TERMS
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import EMPTY, FULL, Heights, body_sinking, coordinates, finite_rotation_readings
 
@@ -87,8 +88,8 @@ def select_finite_rotation(search: ModelSearch, plain: ModelStructure) -> ModelS
         first, assumption = tried[likeliest], (plainest, *others)[likeliest]
     if first.gain_over(search) <= search.required_of_switch:
         return search
-    turned = _corrected(first, recorded, assumption)
-    if plain.names != structure.names:
+    turned = _without_unneeded(_corrected(first, recorded, assumption), recorded, assumption)
+    if plain.names != structure.names and turned.is_overdispersed:
         base = _with_geometry(replace(plain, carried_at=structure.carried_at), turned.fit.parameters, assumption)
         again = select_linear_terms(replace(turned.refit(base), steps=search.steps))
         anew = _corrected(again, recorded, assumption)
@@ -149,6 +150,17 @@ def _corrected(
         fitted = fit_structure(structure, decays, fit, NEAR, search.progress, most=most)
         search = replace(search, structure=structure, fit=fitted, decays=tuple(decays))
     return search
+
+
+def _without_unneeded(search: ModelSearch, recorded: Sequence[FreeDecay], assumption: _Assumption) -> ModelSearch:
+    """Leave out terms that made up for finite rotation: what a part that hardly weighs does is no motion of the body's."""
+    unneeded = {term for term in search.selected if not search.needs(term)}
+    if not unneeded:
+        return search
+    for term in sorted(unneeded):
+        search = search.recorded({term: search.wald_gain(term)}, True, False, search.veto(term))
+    kept = tuple(term for term in search.structure.terms if not {term, TERMS[term].refines} & unneeded)
+    return _corrected(search.refit(search.structure.with_terms(kept)), recorded, assumption)
 
 
 def _without_rotation(

@@ -195,7 +195,7 @@ def fit_usual_terms(search: ModelSearch, rich: ModelStructure) -> ModelSearch | 
     lost = {term for term in rich.terms if TERMS[term].resembles_others and (best is None or best.is_lost(term))}
     if lost:
         without = rich.with_terms(tuple(term for term in rich.terms if term not in lost))
-        other = _fit_beginnings(search, start, without)
+        other = _fit_beginnings(search, start, without) if best is None else _refit_beginnings(search, best, without)
         ends = [end for end in (best, other and _refit_beginnings(search, other, rich)) if end is not None]
         best = max(ends, key=lambda end: end.fit.loglikelihood, default=None)
     return None if best is None else replace(best, structure=replace(rich, usual=usual_sizes(rich, values)))

@@ -6,6 +6,7 @@ from sprung.vehicle.characteristics import (
     MOTION_RATIOS,
     WHEEL_LOADS,
     Characteristic,
+    evaluate_quantities,
     evaluate_quantity,
     wheel_loads,
 )
@@ -161,6 +162,7 @@ __all__ = [
     "coordinates",
     "differentiate_motions",
     "differentiate_tyre_rates_at_rest",
+    "evaluate_quantities",
     "evaluate_quantity",
     "finite_rotation_readings",
     "free_decay",

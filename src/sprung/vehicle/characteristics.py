@@ -8,6 +8,7 @@ chapter 5). They are of the linear vehicle: sliding friction, a damper at the me
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -220,15 +221,45 @@ def evaluate_quantity(name: str, names: Sequence[str], values: Real) -> tuple[fl
     gradient
         By each parameter, SI, shape (parameter,); exact to rounding.
     """
-    if name in names:
-        position = names.index(name)
-        return float(values[position]), np.eye(1, len(names), position)[0]
-    characteristic = DERIVED.get(name) or CHARACTERISTICS[name]
-    # f(p + ih) = f(p) + ih f'(p) + O(h²): the imaginary part holds the derivative, without any cancellation (Squire and Trapp,
-    # SIAM Rev. 40 (1998) 110). One evaluation takes a step in every parameter.
-    steps = values[:, None] + 1j * _STEP * np.eye(len(names))
-    found = np.broadcast_to(characteristic.value(dict(zip(names, steps, strict=True))), len(names))
-    return float(found[0].real), found.imag / _STEP
+    values, gradients = evaluate_quantities((name,), tuple(names), values)
+    return float(values[0]), gradients[0]
+
+
+def evaluate_quantities(quantities: tuple[str, ...], names: tuple[str, ...], values: Real) -> tuple[Real, Real]:
+    """Return several such quantities at once, and their gradients.
+
+    Parameters
+    ----------
+    quantities
+        Each one of `names`, of `DERIVED` or of `CHARACTERISTICS`.
+    names, values
+        As for `evaluate_quantity`.
+
+    Returns
+    -------
+    values
+        SI, shape (quantity,).
+    gradients
+        By each parameter, SI, shape (quantity, parameter); exact to rounding.
+    """
+    selection, derived = _selection(quantities, names)
+    found, gradients = selection @ values, selection.copy()
+    if derived:
+        # f(p + ih) = f(p) + ih f'(p) + O(h²): the imaginary part holds the derivative, without any cancellation (Squire and
+        # Trapp, SIAM Rev. 40 (1998) 110). One evaluation takes a step in every parameter.
+        steps = dict(zip(names, values[:, None] + 1j * _STEP * np.eye(len(names)), strict=True))
+        for row in derived:
+            characteristic = DERIVED.get(quantities[row]) or CHARACTERISTICS[quantities[row]]
+            stepped = np.broadcast_to(characteristic.value(steps), len(names))
+            found[row], gradients[row] = stepped[0].real, stepped.imag / _STEP
+    return found, gradients
+
+
+@lru_cache
+def _selection(quantities: tuple[str, ...], names: tuple[str, ...]) -> tuple[Real, tuple[int, ...]]:
+    """Return the gradients of those quantities that are parameters, and the rows of the others."""
+    selection = np.array([[float(name == quantity) for name in names] for quantity in quantities])
+    return selection, tuple(row for row, quantity in enumerate(quantities) if quantity not in names)
 
 
 def wheel_loads(model: LinearModel, values: Real) -> tuple[Real, Real]:
