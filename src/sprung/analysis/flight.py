@@ -22,6 +22,7 @@ from sprung.preprocess import DropObservation, FreeDecay, find_flights
 from sprung.progress import Progress, Step
 from sprung.selection import ModelSearch, final_tolerance, fit_structure, select_gravity_leakage
 from sprung.vehicle import (
+    Motion,
     Readout,
     Vehicle,
     evaluate_quantity,
@@ -124,16 +125,22 @@ def _initial_states(run: Analysis, found: Sequence[FreeDecay | None]) -> Real:
     campaign, optimum = run.campaign, run.fit
     states = optimum.states[:, : len(state_variables(optimum.names))].copy()
     vehicle = Vehicle.nearest(optimum.parameters, name="fitted", **run.model.structure.heights.by_key)
-    rows = Readout.of(campaign.sensors, optimum.names, wheelbase_of(optimum.names, optimum.values)).at(optimum.values)
+    readout = Readout.of(campaign.sensors, optimum.names, wheelbase_of(optimum.names, optimum.values))
     observations = {observation.recording.name: observation for observation in run.prepared.observations}
     for state, flight in zip(states, found, strict=True):
         if flight is not None:
             # Coordinates without mass, whose velocities are no part of the state, come last.
-            state[:] = _start(flight, observations[flight.file], vehicle, campaign, rows)[: len(state)]
+            motions, before = _falls(flight, observations[flight.file], vehicle, campaign)
+            fallen = [readout.read(optimum.values, motion)[:, before:] for motion in motions]
+            motion = motions[_nearest(flight, fallen)]
+            state[:] = np.concatenate([motion.displacement[:, before], motion.velocity[:, before]])[: len(state)]
     return states
 
 
-def _start(flight: FreeDecay, observation: DropObservation, vehicle: Vehicle, campaign: Campaign, rows: Real) -> Real:
+def _falls(
+    flight: FreeDecay, observation: DropObservation, vehicle: Vehicle, campaign: Campaign
+) -> tuple[list[Motion], int]:
+    """Return how the vehicle falls from blocks of the stated height, or of several, and which sample is the flight's."""
     load, rate, height = campaign.load(flight.load), flight.rate, observation.drop.height
     from sprung.simulation import BlockSupport, simulate_nonlinear_drops  # noqa: PLC0415 (only the fall needs it)
 
@@ -143,11 +150,12 @@ def _start(flight: FreeDecay, observation: DropObservation, vehicle: Vehicle, ca
     since = (first - observation.rest.sample) / rate
     offset = since % (1 / rate)
     before, samples = round((since - offset) * rate), int(_LONG_ENOUGH * rate)
-    motions = simulate_nonlinear_drops(vehicle, blocks, 1 / rate, before + samples, offset)
+    return simulate_nonlinear_drops(vehicle, blocks, 1 / rate, before + samples, offset), before
+
+
+def _nearest(flight: FreeDecay, fallen: Sequence[Real]) -> int:
+    """Return the position of the readings, each of shape (channel, time), that are nearest to those of a flight."""
+    samples = min(flight.values.shape[1], fallen[0].shape[1])
     readings = (flight.values - flight.rest.level[:, None])[:, :samples]
-    missed = [
-        np.nansum((readings - (rows @ motion.acceleration)[:, before : before + readings.shape[1]]) ** 2)
-        for motion in motions
-    ]
-    best = motions[int(np.argmin(missed))]
-    return np.concatenate([best.displacement[:, before], best.velocity[:, before]])
+    missed = [np.nansum((readings - one[:, :samples]) ** 2) for one in fallen]
+    return int(np.argmin(missed))
