@@ -24,7 +24,9 @@ def table_of(folder: Path, content: str | bytes, name: str = "x.csv") -> SampleT
     return read_table(path)
 
 
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=60, deadline=None)
+@settings(
+    suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow], max_examples=60, deadline=None
+)
 @given(
     values=st.lists(
         st.lists(st.floats(-1e4, 1e4).map(lambda x: round(x, 5)), min_size=3, max_size=3), min_size=1, max_size=5

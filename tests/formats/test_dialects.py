@@ -77,7 +77,9 @@ def test_a_table_is_read_back_exactly(tmp_path: Path, delimiter: str, mark: str,
         np.testing.assert_allclose(table.time, 0.002 * np.arange(5), rtol=0, atol=2e-11, err_msg=text)
 
 
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=80, deadline=None)
+@settings(
+    suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow], max_examples=80, deadline=None
+)
 @given(
     values=st.lists(st.tuples(*[st.floats(-1e9, 1e9)] * 2), min_size=2, max_size=8),
     delimiter=st.sampled_from(list(DELIMITERS)),
@@ -204,7 +206,9 @@ def test_what_may_be_read_in_two_ways_is_not_read(tmp_path: Path, content: str |
 VALID = written(VALUES, "semicolon", ",", PREAMBLES["key and value"], units=True, time="clock").encode()
 
 
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=400, deadline=10_000)
+@settings(
+    suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow], max_examples=400, deadline=10_000
+)
 @given(
     content=st.one_of(
         st.binary(max_size=300),

@@ -159,7 +159,9 @@ def test_attributes_of_any_kind_are_borne(tmp_path: Path) -> None:
 
 
 # Bytes changed within are not tried: some of them end the process inside the HDF5 library, where Python cannot help.
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=60, deadline=None)
+@settings(
+    suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow], max_examples=60, deadline=None
+)
 @given(kept=st.floats(0, 1, exclude_max=True), write=st.sampled_from([plain, grouped, matrix]))
 def test_a_cut_file_is_refused(tmp_path: Path, kept: float, write: Callable[[Any], None]) -> None:
     path = written(tmp_path, write)

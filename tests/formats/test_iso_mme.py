@@ -99,7 +99,9 @@ def test_what_is_no_test_is_refused(tmp_path: Path, channels: tuple[str | bytes,
 VALID = channel([1.5, -2e-3, "NOVALUE", 7]).encode()
 
 
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=150, deadline=10_000)
+@settings(
+    suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow], max_examples=150, deadline=10_000
+)
 @given(
     content=st.one_of(
         st.binary(max_size=200),

@@ -344,7 +344,9 @@ def test_a_file_in_many_blocks_is_the_same(tmp_path: Path, monkeypatch: pytest.M
     np.testing.assert_array_equal(table.time, whole.time)
 
 
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=60, deadline=None)
+@settings(
+    suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow], max_examples=60, deadline=None
+)
 @given(columns=st.sampled_from(["No", "One", "Multi"]), spoiling=spoilings())
 def test_whatever_happens_to_a_file(tmp_path: Path, columns: str, spoiling: Spoiling) -> None:
     path = written(tmp_path, *halves(columns, {"x0": 0.048}))

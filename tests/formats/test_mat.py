@@ -262,7 +262,9 @@ def test_a_real_recording(shared: Path) -> None:
     assert np.diff(table.time).mean() == pytest.approx(1 / 12800, rel=1e-9)
 
 
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=150, deadline=None)
+@settings(
+    suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow], max_examples=150, deadline=None
+)
 @given(data=st.data(), version=st.sampled_from(["4", "5", "7", "7.3"]))
 @pytest.mark.slow
 def test_damage_is_refused_or_harmless(tmp_path: Path, data: st.DataObject, version: str) -> None:

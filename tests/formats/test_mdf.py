@@ -168,7 +168,9 @@ def sound(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
 
 # The library's destructor fails where its constructor did; that is told to nobody.
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=100, deadline=None)
+@settings(
+    suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow], max_examples=100, deadline=None
+)
 @given(version=st.sampled_from(["3.30", "4.10", "4.20"]), spoiling=spoilings())
 def test_whatever_happens_to_a_file(tmp_path: Path, sound: dict[str, bytes], version: str, spoiling: Spoiling) -> None:
     path = tmp_path / "x.mf4"

@@ -128,7 +128,9 @@ def test_claims_by_ending_and_first_bytes(tmp_path: Path) -> None:
     assert not ParquetFormat().claims(tmp_path / "x.parquet", b"")
 
 
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=80, deadline=None)
+@settings(
+    suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow], max_examples=80, deadline=None
+)
 @given(data=st.data(), compression=st.sampled_from(["none", "snappy", "zstd"]))
 def test_damage_is_refused_or_harmless(tmp_path: Path, data: st.DataObject, compression: str) -> None:
     path = written(tmp_path, {"time": TIME, "a": A}, {"unit": "g"}, compression=compression)

@@ -115,7 +115,9 @@ def test_against_another_library(tmp_path: Path, kind: type) -> None:
     np.testing.assert_allclose(table.take(), values, rtol=0, atol=resolution)
 
 
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=200, deadline=None)
+@settings(
+    suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow], max_examples=200, deadline=None
+)
 @given(spoiling=spoilings(until=0.7))
 def test_whatever_happens_to_a_file(tmp_path: Path, spoiling: Spoiling) -> None:
     path = tmp_path / "x.rsp"

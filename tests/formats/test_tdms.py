@@ -115,7 +115,9 @@ def test_without_the_library(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
         TdmsFormat().read(path)
 
 
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=100, deadline=None)
+@settings(
+    suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow], max_examples=100, deadline=None
+)
 @given(spoiling=spoilings())
 def test_whatever_happens_to_a_file(tmp_path: Path, spoiling: Spoiling) -> None:
     segment = [channel("a", VALUES[0], **EVEN), channel("Time", VALUES[1], "two"), channel("b", VALUES[1], "two")]

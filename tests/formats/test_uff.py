@@ -118,7 +118,9 @@ def test_without_the_library(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
         UffFormat().read(path)
 
 
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=60, deadline=None)
+@settings(
+    suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow], max_examples=60, deadline=None
+)
 @given(binary=st.integers(0, 1), spoiling=spoilings())
 def test_whatever_happens_to_a_file(tmp_path: Path, binary: int, spoiling: Spoiling) -> None:
     (tmp_path / "x.uff").unlink(missing_ok=True)

@@ -90,7 +90,9 @@ def test_claims_by_ending_and_first_bytes(tmp_path: Path) -> None:
     assert not WavFormat().claims(tmp_path / "x.wav", b"")
 
 
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=100, deadline=None)
+@settings(
+    suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow], max_examples=100, deadline=None
+)
 @given(data=st.data(), kind=st.sampled_from([np.uint8, np.int16, np.float64]))
 def test_damage_is_refused_or_harmless(tmp_path: Path, data: st.DataObject, kind: Any) -> None:
     raw = bytearray(sound((100 * SAMPLES).astype(kind)))

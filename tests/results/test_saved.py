@@ -160,7 +160,9 @@ def test_one_array_is_no_series(copy: Path) -> None:
         sprung.load(copy)
 
 
-@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(
+    max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow]
+)
 @given(
     st.sampled_from(["results.json", "series.npz"]), st.floats(0, 1, exclude_max=True), st.booleans(), st.integers(0, 7)
 )
