@@ -11,7 +11,7 @@ from scipy.linalg import null_space
 
 from sprung.display import shown
 from sprung.errors import Problems
-from sprung.vehicle import PARAMETERS, LinearModel, evaluate_quantity
+from sprung.vehicle import PARAMETERS, LinearModel, evaluate_quantities
 
 Real = NDArray[np.float64]
 
@@ -112,9 +112,8 @@ def fit_state_matrices(
         return np.concatenate([state.residual(at) for state in states])
 
     def constraints(at: Real) -> tuple[Real, Real]:
-        pairs = [(value, *evaluate_quantity(name, names, at)) for name, value in known.items()]
-        misses = np.array([now - value for value, now, _ in pairs])
-        return misses, np.array([gradient for *_, gradient in pairs]).reshape(len(pairs), len(names))
+        found, gradients = evaluate_quantities(tuple(known), tuple(names), at)
+        return found - np.array([*known.values()]), gradients
 
     def merit(at: Real) -> float:
         misses, gradients = constraints(at)

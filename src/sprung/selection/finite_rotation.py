@@ -19,7 +19,6 @@ from sprung.selection.search import ModelSearch
 from sprung.selection.starts import fit_structure, start_values, thinned
 from sprung.selection.stepwise import select_linear_terms
 from sprung.selection.structure import ModelStructure
-from sprung.selection.terms import TERMS
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import EMPTY, FULL, Heights, body_sinking, coordinates, finite_rotation_readings
 
@@ -39,7 +38,6 @@ all samples up to which that saves anything."""
 
 _FIRST_ITERATIONS = 2
 """Iterations after which there has to be a gain: the optimum moves by a few standard errors only."""
-
 
 _FEW, _BODY = 4, 2 * np.pi * 1.5
 """Drops that are enough for that, and usual own frequency of the body, 1/s."""
@@ -154,13 +152,12 @@ def _corrected(
 
 def _without_unneeded(search: ModelSearch, recorded: Sequence[FreeDecay], assumption: _Assumption) -> ModelSearch:
     """Leave out terms that made up for finite rotation: what a part that hardly weighs does is no motion of the body's."""
-    unneeded = {term for term in search.selected if not search.needs(term)}
+    unneeded = [term for term in search.selected if not search.needs(term)]
     if not unneeded:
         return search
-    for term in sorted(unneeded):
+    for term in unneeded:
         search = search.recorded({term: search.wald_gain(term)}, True, False, search.veto(term))
-    kept = tuple(term for term in search.structure.terms if not {term, TERMS[term].refines} & unneeded)
-    return _corrected(search.refit(search.structure.with_terms(kept)), recorded, assumption)
+    return _corrected(search.refit(search.without(*unneeded)), recorded, assumption)
 
 
 def _without_rotation(

@@ -105,5 +105,4 @@ def _without_unneeded(search: ModelSearch) -> ModelSearch:
             return search.recorded(gains, True, True)
         for term in unneeded:
             search = search.recorded({term: gains[term]}, True, False, against[term])
-        kept = tuple(term for term in search.structure.terms if not {term, TERMS[term].refines} & {*unneeded})
-        search = search.refit(search.structure.with_terms(kept), ITERATIONS, beginning_only=True)
+        search = search.refit(search.without(*unneeded), ITERATIONS, beginning_only=True)

@@ -27,9 +27,6 @@ _SAME = 0.05
 _NARROW, _FINE = 0.25, 0.02
 """Logarithm of the ratio of corners between which the gain is a parabola, and of one from the best to be compared as well."""
 
-_OPEN = LowPass(np.inf, _ORDER)
-"""That of a logger without one: its motions are stepped as finely as those before another one."""
-
 _LOWEST = 25.0
 """Hz below which no logger cuts off the motion of wheels."""
 
@@ -82,15 +79,14 @@ def confirm_low_pass(search: ModelSearch) -> ModelSearch:
 
 def _likeliest_corner(search: ModelSearch, first: float, ratio: float) -> float | None:
     """Return the corner that explains the beginnings of the decays best, climbed to from a first one, Hz; None for none."""
-    structure, highest = search.structure, HIGHEST_CORNER * min(decay.rate for decay in search.decays)
+    highest = HIGHEST_CORNER * min(decay.rate for decay in search.decays)
     search.progress(Step("looking for a low-pass of the loggers"))
-    without = search.refit(replace(structure, low_pass=_OPEN), _ITERATIONS, beginning_only=True)
+    without = _fit_behind(search, np.inf)
     gains: dict[float, float] = {}
     waiting = [min(first, 0.9 * highest)]
     while waiting := [corner for corner in waiting if _LOWEST < corner < highest]:
         for corner in waiting:
-            behind = replace(structure, low_pass=LowPass(corner, _ORDER))
-            gains[corner] = search.refit(behind, _ITERATIONS, beginning_only=True).gain_over(without)
+            gains[corner] = _fit_behind(search, corner).gain_over(without)
         best = max(gains, key=lambda corner: gains[corner])
         # Where one that is too low only loses, a higher one is tried, and then none.
         lower = [best / ratio] * (best == min(gains) and gains[best] > 0)
@@ -98,9 +94,17 @@ def _likeliest_corner(search: ModelSearch, first: float, ratio: float) -> float 
     if not max(gains.values(), default=0.0) > search.required_of_switch:
         return None
     while (between := _between(gains)) is not None:
-        behind = replace(structure, low_pass=LowPass(between, _ORDER))
-        gains[between] = search.refit(behind, _ITERATIONS, beginning_only=True).gain_over(without)
+        gains[between] = _fit_behind(search, between).gain_over(without)
     return _vertex(gains)
+
+
+def _fit_behind(search: ModelSearch, corner: float) -> ModelSearch:
+    """Fit the model behind a low-pass to the beginnings of the decays.
+
+    One at infinity does nothing, but motions before it are stepped as finely as those before another one.
+    """
+    behind = replace(search.structure, low_pass=LowPass(corner, _ORDER))
+    return search.refit(behind, _ITERATIONS, beginning_only=True)
 
 
 def _between(gains: Mapping[float, float]) -> float | None:

@@ -145,10 +145,10 @@ class ModelSearch:
         tracks = "separate" if SEPARATE_TRACKS in terms else self.structure.tracks
         return self.structure.with_terms((*self.structure.terms, *added), tracks)
 
-    def without(self, term: str) -> ModelStructure:
-        """Return the structure without one of its terms and what refines it."""
-        kept = tuple(other for other in self.structure.terms if term not in (other, TERMS[other].refines))
-        return self.structure.with_terms(kept, "shared" if term == SEPARATE_TRACKS else None)
+    def without(self, *terms: str) -> ModelStructure:
+        """Return the structure without some of its terms and what refines them."""
+        kept = tuple(other for other in self.structure.terms if not {other, TERMS[other].refines} & {*terms})
+        return self.structure.with_terms(kept, "shared" if SEPARATE_TRACKS in terms else None)
 
     def recorded(self, gains: Mapping[str, float], fitted: bool, taken: bool, against: str = "") -> ModelSearch:
         """Return the search with one step more for each term and its gain.

@@ -259,6 +259,7 @@ def evaluate_quantities(quantities: tuple[str, ...], names: tuple[str, ...], val
 def _selection(quantities: tuple[str, ...], names: tuple[str, ...]) -> tuple[Real, tuple[int, ...]]:
     """Return the gradients of those quantities that are parameters, and the rows of the others."""
     selection = np.array([[float(name == quantity) for name in names] for quantity in quantities])
+    selection = selection.reshape(len(quantities), len(names))
     return selection, tuple(row for row, quantity in enumerate(quantities) if quantity not in names)
 
 

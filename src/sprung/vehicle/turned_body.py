@@ -264,7 +264,7 @@ def _product(one: Array, other: Array) -> Array:
     """Return the product of two signals, by Leibniz's rule."""
     product: Array = one * other[_VALUE]
     product[_RATE] += one[_VALUE] * other[_RATE]
-    product[_SECOND] += 2 * one[_RATE] * other[_RATE] + one[_VALUE] * other[_SECOND]
+    product[_SECOND] = _second_of_product(one, other)
     return product
 
 
