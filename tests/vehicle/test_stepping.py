@@ -324,6 +324,27 @@ def test_motions_near_to_others_are_those_of_the_steps(extras: tuple[str, ...]) 
             np.testing.assert_allclose(one, other, atol=1e-6 * size)
 
 
+@pytest.mark.parametrize("friction", [0.3, 100.0])
+def test_a_small_friction_does_not_keep_segments_open(friction: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its memory turns round within a micrometre, and no force worth mentioning with it: the motions close all the same."""
+    extras = ("friction", "rebound")
+    names, values = values_of(extras)
+    values = np.where([name.startswith("F_") for name in names], friction, values)
+    states, before = some_states(2, 5), stepper(extras, 0.002, values)
+    memories = np.full((2, before.forces.memories), 0.2)
+    known = before.integrate(states, memories, 301)
+    _, segments, transitions = differentiate_motions(before, known, np.zeros((2, 0, 14 + before.forces.number)), 2)
+    first = np.arange(segments.shape[1]) * segments_of(301, 2)[1]
+    starts = np.concatenate([known.states[first], known.memories[first]], axis=2)
+    near = NearbyMotion(np.swapaxes(starts, 0, 1), transitions, np.concatenate([known.forces, known.surplus], axis=2))
+    there = stepper(extras, 0.002, values * (1 + 1e-2 * np.cos(np.arange(len(names)))))
+    expected = there.integrate(states, memories, 301)
+    monkeypatch.setattr(Stepper, "integrate", None)  # whole motions are not followed
+    found = integrate_near(there, states, memories, 301, 2, near)
+    np.testing.assert_allclose(found.states, expected.states, atol=2e-6 * np.abs(expected.states).max())
+    np.testing.assert_allclose(found.forces, expected.forces, atol=2e-6 * np.abs(expected.forces).max())
+
+
 @pytest.mark.parametrize(
     ("law", "parameters"),
     [

@@ -6,7 +6,7 @@ that is missing is found.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 
 from sprung.estimation import NEAR, UsualValue, VehicleSize, fit_linear, usual_vehicle
@@ -196,8 +196,10 @@ def fit_usual_terms(search: ModelSearch, rich: ModelStructure) -> ModelSearch | 
     if lost:
         without = rich.with_terms(tuple(term for term in rich.terms if term not in lost))
         other = _fit_beginnings(search, start, without) if best is None else _refit_beginnings(search, best, without)
-        ends = [end for end in (best, other and _refit_beginnings(search, other, rich)) if end is not None]
-        best = max(ends, key=lambda end: end.fit.loglikelihood, default=None)
+        again = None if other is None else _fit_again(search, other, rich, lost)
+        best = max(
+            (end for end in (best, again) if end is not None), key=lambda end: end.fit.loglikelihood, default=None
+        )
     return None if best is None else replace(best, structure=replace(rich, usual=usual_sizes(rich, values)))
 
 
@@ -207,6 +209,16 @@ def _fit_beginnings(search: ModelSearch, start: ModelSearch, structure: ModelStr
     if search.leaves_misfit(found.fit, MISFIT_LEFT_AT_FIRST):
         return None
     return found if found.fit.converged else _refit_beginnings(search, found, structure)
+
+
+def _fit_again(
+    search: ModelSearch, start: ModelSearch, structure: ModelStructure, lost: Collection[str]
+) -> ModelSearch:
+    """Fit a structure from a fit without terms that were lost; not to the end where they are lost once more."""
+    found = _refit_beginnings(search, start, structure, _FIRST_ITERATIONS)
+    if found.fit.converged or any(found.is_lost(term) for term in lost):
+        return found
+    return _refit_beginnings(search, found, structure)
 
 
 def _refit_beginnings(

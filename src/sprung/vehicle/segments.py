@@ -1,11 +1,12 @@
 """Segments of motions, all followed side by side from predicted initial states (multiple shooting).
 
 A step of the program costs nearly the same for one motion as for many. Where the motions are known roughly, they are cut into
-segments, which are followed at once; Newton's method closes what they leave between them.
+segments, which are followed at once; Newton's method closes what they leave between them, and Broyden's update corrects its
+derivatives by what each pass shows.
 
 References
 ----------
-H. G. Bock, Springer Series in Chemical Physics 18 (1981) 102.
+H. G. Bock, Springer Series in Chemical Physics 18 (1981) 102; C. G. Broyden, Math. Comp. 19 (1965) 577.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.vehicle.force_laws import ElementInput
 from sprung.vehicle.stepping import Stepper, Trajectory
 
 Array = NDArray[np.float64]
@@ -31,6 +33,8 @@ _CLOSED = 1e-6
 
 _PROMISING = 1e-3
 """Gap that the passes left would leave, if each reduced it as the last one did, up to which they are tried."""
+
+_TINY = float(np.finfo(float).tiny)
 
 _NEARLY = 3e-5
 """Differences of forces, as a part of the largest, that are corrected without another evaluation."""
@@ -127,7 +131,7 @@ def integrate_near(
     slots, (kind, slot) = stepper.slots, stepper.places
     starts, state = near.starts.copy(), states.shape[1]
     starts[:, 0] = np.concatenate([states, memories], axis=1)
-    scale = _scale(starts, state // 2, state)
+    scale = _scale(stepper, starts, near.forces)
 
     def by_drop(values: Array) -> Array:
         """Return values (step, kind, slot · segment, column) as (drop, segment, step, column)."""
@@ -135,7 +139,7 @@ def integrate_near(
         return np.moveaxis(split, 0, 3)[kind, slot]
 
     similar = cut_into_segments(near.forces, steps_of_segments(number, length), slots)
-    error = np.inf
+    transitions, changes, before, error = near.transitions, np.zeros_like(starts), starts, np.inf
     for left in reversed(range(_MOST_PASSES)):
         begin = starts[slots].reshape(len(slots), -1, starts.shape[2])
         motions, kept, surplus = stepper.follow(
@@ -143,9 +147,10 @@ def integrate_near(
         )
         similar = np.concatenate([motions[..., state:-1], surplus], axis=3)
         ends = by_drop(np.concatenate([motions[-1:, ..., :state], kept[-1:]], axis=3))[:, :, 0]
+        transitions, before = _learnt(transitions, ends - before, changes / scale, scale), ends
         changes = np.zeros_like(starts)
         for segment in range(number - 1):
-            moved = near.transitions[:, segment] @ changes[:, segment, :, None]
+            moved = transitions[:, segment] @ changes[:, segment, :, None]
             changes[:, segment + 1] = ends[:, segment] - starts[:, segment + 1] + moved[..., 0]
         previous, error = error, float(np.max(np.abs(changes) / scale))
         if error <= _CLOSED:
@@ -164,11 +169,49 @@ def integrate_near(
     return stepper.integrate(states, memories, steps, similar=near.forces)
 
 
-def _scale(starts: Array, coordinates: int, state: int) -> Array:
+def _learnt(transitions: Array, moved: Array, changes: Array, scale: Array) -> Array:
+    """Return transitions that agree with what the last pass showed of them (Broyden's update).
+
+    A kink that some motion has passed since makes them wrong, and Newton's method slow.
+
+    Parameters
+    ----------
+    transitions
+        The end of each segment by its start, SI, shape (drop, segment, start, start).
+    moved
+        How the ends moved as the starts changed, SI, shape (drop, segment, start).
+    changes
+        Of the starts, as parts of the scale, shape (drop, segment, start).
+    scale
+        Of each of them, SI, shape (start,).
+    """
+    squares = np.sum(changes**2, axis=-1, keepdims=True)
+    missed = moved - (transitions @ (changes * scale)[..., None])[..., 0]
+    along = np.divide(changes, squares * scale, out=np.zeros_like(changes), where=squares > _CLOSED**2)
+    learnt: Array = transitions + missed[..., :, None] * along[..., None, :]
+    return learnt
+
+
+def _scale(stepper: Stepper, starts: Array, forces: Array) -> Array:
     """Return the largest displacement, velocity and memory of motions for each of theirs, shape (start,).
 
-    A coordinate that hardly moves need not be known to a part of its own motion; angles act at levers of about 1 m.
+    A coordinate that hardly moves need not be known to a part of its own motion; angles act at levers of about 1 m. And the
+    memory of a force that is small beside others need not be known as well as these: it may change as fast as it likes.
+
+    Parameters
+    ----------
+    stepper
+        What steps.
+    starts
+        State and memories, SI, shape (drop, segment, start).
+    forces
+        Of the rows of the nonlinear elements, and their surplus, N, shape (step, drop, 2 row).
     """
     largest = np.abs(starts).max(axis=(0, 1))
-    parts = np.split(largest, [coordinates, state])
-    return np.concatenate([np.full_like(part, max(part.max(initial=0.0), np.finfo(float).tiny)) for part in parts])
+    state, rows = stepper.steps.shape[1], stepper.forces.number
+    motion, memories = np.split(largest, [state])
+    at_rest = np.zeros(rows)
+    by_memory = stepper.forces_at.evaluate(ElementInput(at_rest, at_rest, at_rest, np.zeros(len(memories)))).by_memory
+    effects = np.maximum(np.abs(by_memory), _TINY)
+    scales = [np.full(state // 2, max(part.max(), _TINY)) for part in np.split(motion, 2)]
+    return np.concatenate([*scales, np.maximum(memories, np.abs(forces[..., :rows]).max() / effects)])
