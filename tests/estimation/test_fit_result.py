@@ -13,9 +13,12 @@ import sprung
 from sprung.campaign import Campaign, LoggerClock
 from sprung.estimation import FitResult, fit_from_contact, fit_linear, fit_nonlinear, score_nonlinear_terms
 from sprung.estimation.contact import clear_of_splines
+from sprung.estimation.friction_memories import go_on_with_possible_memories
 from sprung.estimation.starts import VehicleSize
 from sprung.estimation.stepped_likelihood import TimeSteppingAt
+from sprung.estimation.time_stepping import TimeSteppingObjective
 from sprung.faults.fault_scores import score_faults
+from sprung.optimisation import Maximum
 from sprung.preprocess import FreeDecay, prepare
 from sprung.selection.structure import ModelStructure, choose_structure
 from sprung.uncertainty import KnownValue
@@ -146,19 +149,27 @@ def test_one_drop_of_a_stepped_fit_is_that_drop(stepped: FitResult) -> None:
 
 
 @pytest.mark.slow
-def test_impossible_memories_are_given_up(
-    rubbing: tuple[Campaign, ModelStructure, tuple[FreeDecay, ...], Real], stepped: FitResult
-) -> None:
-    """Frictions that would hold with 3 and 2 times themselves when the decays begin: a fit goes on without them."""
-    campaign, structure, decays, _ = rubbing
+def test_drops_go_on_with_memories_that_friction_can_have(stepped: FitResult) -> None:
+    """One drop holds with six times its frictions, which no step was taken from yet: it alone begins anew, and is likelier."""
+    problem = stepped.problem
+    assert isinstance(problem.objective, TimeSteppingObjective)
     states = stepped.states.copy()
-    states[:, 14:] = np.array([3.0, -3.0, 2.0, 2.0])
-    found = fit_nonlinear(
-        decays, structure.nonlinear_models, campaign.sensors, structure.known,
-        start=stepped.parameters, states=states, enough=0.01, near=True, most=2,
-    )  # fmt: skip
-    assert np.abs(found.states[:, 14:]).max() < 1.5
-    assert found.steps > 2
+    states[1, 14:] = [6.0, -6.0, 5.0, -5.0]
+    objective = problem.objective.with_states(states)
+    held = replace(problem, objective=objective)
+    stuck = Maximum(held.start(stepped.iterate.u), 0, True)
+    found = go_on_with_possible_memories(held, objective, stuck, 0.1, 2)
+    assert found.steps > 0
+    assert held.cost(found.point) < held.cost(stuck.point) - 100
+    assert np.abs(found.point.at.states[1, 14:]).max() < 1.5
+    assert held.cost(found.point) < stepped.problem.cost(stepped.iterate) + 1
+
+
+def test_possible_memories_are_left_as_they_are(stepped: FitResult) -> None:
+    objective = stepped.problem.objective
+    assert isinstance(objective, TimeSteppingObjective)
+    ended = Maximum(stepped.iterate, 3, True)
+    assert go_on_with_possible_memories(stepped.problem, objective, ended, 0.1, 2) is ended
 
 
 def test_a_landing_that_is_not_over_is_left_out(stepped: FitResult) -> None:

@@ -249,30 +249,20 @@ def test_a_usual_value_is_no_weighing() -> None:
     assert mass.std == pytest.approx(0.05 * mass.value, rel=0.1)
 
 
-def test_a_friction_that_went_astray_begins_anew_without_a_jolt(
-    campaign: Campaign, decays: tuple[FreeDecay, ...], plain: ModelStructure, optimum: FitResult
+def test_frictions_that_hold_with_more_than_they_can_begin_anew_sliding(
+    decays: tuple[FreeDecay, ...], campaign: Campaign, plain: ModelStructure, optimum: FitResult
 ) -> None:
-    """Memories of more than one cannot be: without them each drop begins with the forces, so the accelerations, it had."""
+    """Noise and another law explain a memory of 1.4; one of -2.2 and all others of its drop are those of sliding."""
     larger = plain.with_terms(("friction",))
-    values = np.array(
-        [(optimum.parameters | {"F_f": 30.0, "F_r": 80.0, "s_f": 6e4, "s_r": 1.2e5})[n] for n in larger.names]
-    )
+    memories = np.tile([1.4, 0.3, -1.1, 0.9], (len(decays), 1))
+    memories[1] = [1.4, 0.3, -2.2, 0.9]
+    states = np.hstack([optimum.states, memories])
     rows = Readout.of(campaign.sensors, larger.names)
-    states = np.hstack([optimum.states, np.tile([1.0, 0.3, -1.4, 1.3], (len(decays), 1))])
     objective = TimeSteppingObjective(decays, larger.nonlinear_models, rows, states, False, 0.002)
-    weights = np.ones(8)
-    anew = objective.without_impossible_memories(values, objective.at(values, weights).states)
-    assert anew is not None
-    np.testing.assert_array_equal(anew[:, 14:], np.tile([1.0, 0.3, 0.0, 0.0], (len(decays), 1)))
-    np.testing.assert_array_equal(anew[:, 7:14], states[:, 7:14])
-    assert np.all(np.abs(anew[:, :7] - states[:, :7]).max(axis=1) > 1e-3)
-    restarted = objective.with_states(anew)
-    begun = [one.at(values, weights).motion(0, 0, 1) for one in (objective, restarted)]
-    model, forces = larger.nonlinear_models["empty"], np.array([30.0, 30.0, 80.0, 80.0])
-    matrices, G = model.linear.matrices(values), model.forces.rows.at(values)
-    pulls = [matrices.K @ one[:7, 0] + matrices.C @ one[7:14, 0] + G.T @ (forces * one[14:, 0]) for one in begun]
-    np.testing.assert_allclose(pulls[1], pulls[0], rtol=1e-9, atol=1e-6)
-    assert restarted.without_impossible_memories(values, restarted.at(values, weights).states) is None
+    anew = objective.with_possible_memories(states)
+    np.testing.assert_array_equal(anew[1, 14:], [1.0, 0.3, -1.0, 0.9])
+    np.testing.assert_array_equal(np.delete(anew, 1, axis=0), np.delete(states, 1, axis=0))
+    np.testing.assert_array_equal(anew[:, :14], states[:, :14])
 
 
 def test_windows_of_time_add_up(decays: tuple[FreeDecay, ...], plain: ModelStructure, optimum: FitResult) -> None:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.estimation.fit_result import FitResult
-from sprung.estimation.impossible_memories import go_on_without_impossible_memories
+from sprung.estimation.friction_memories import go_on_with_possible_memories
 from sprung.estimation.linear_fit import NEAR, expected_nuisances
 from sprung.estimation.low_pass import LowPass
 from sprung.estimation.priors import Coordinates, PriorsAndConstraints, UsualValue
@@ -109,10 +109,11 @@ def fit_nonlinear(
     steps, values = 0, expected_nuisances(known) | dict(start)
     fine = _longest_step(models, values)
     # What a low-pass makes of a friction that turns round depends on when it does: its corner is found by fits to beginnings.
+    beginnings = [_beginning(decay) for decay in decays]
     stages = (
         [
             (
-                [_beginning(decay) for decay in decays],
+                beginnings,
                 max(enough, NEAR if beginning_only else _ON_THE_WAY),
                 _COARSE if low_pass is None or not beginning_only else fine,
                 bool(usual),
@@ -128,9 +129,8 @@ def fit_nonlinear(
         problem = _problem(objective, known, values, usual)
         damping = _FAR if is_far else CLOSE_BY
         found = problem.maximise(problem.priors.nearest(values), None, tolerance, damping, most, cautious=is_far)
-        # What is found on the way of the memories of friction is used by no one, and a single step only compares models.
-        if tolerance < _ON_THE_WAY and not beginning_only and most > 1:
-            found = go_on_without_impossible_memories(problem, objective, found, tolerance, most)
+        if part is not beginnings and most > 1:  # beginnings only compare models, as a single step does
+            found = go_on_with_possible_memories(problem, objective, found, tolerance, most)
         states, steps = found.point.at.states, steps + found.steps
         values = dict(zip(problem.priors.coordinates.names, found.point.at.values.tolist(), strict=True))
     # Whoever goes on from here starts with the initial states that were found.

@@ -96,10 +96,10 @@ class TimeSteppingAt:
         near = self.stepped.predict(np.hstack([np.tile(of_model, (len(states), 1)), states]))
         return self.objective.at_states(values, self.weights, self.stepped.begin + states, near)
 
-    def with_optimal_states(self) -> TimeSteppingAt:
-        """Return the likelihood with the initial states that maximise it at these parameters."""
+    def with_optimal_states(self, most: int = _STATE_STEPS) -> TimeSteppingAt:
+        """Return the likelihood with the initial states that maximise it here, after so many steps at the most."""
         best = self
-        for _ in range(_STATE_STEPS):
+        for _ in range(most):
             tried = best.moved(self.values)
             gain = best._cost - tried._cost
             best = tried if gain > 0 else best

@@ -21,7 +21,6 @@ from sprung.estimation.stepped_likelihood import TimeSteppingAt
 from sprung.estimation.stepped_motion import SteppedMotion
 from sprung.preprocess import FreeDecay
 from sprung.vehicle import (
-    ElementInput,
     NearbyMotion,
     NonlinearModel,
     Readout,
@@ -38,8 +37,8 @@ Index = NDArray[np.int64]
 _MEMORY_STD = 1.0
 """Prior standard uncertainty of a friction's memory when a decay begins, as a part of the friction."""
 
-_MOST_MEMORY = 1.15
-"""Memory that no friction has: it slides at one, and noise adds little."""
+_MOST_MEMORY = 2.0
+"""Memory that no friction has: it slides at one, and noise and a friction of another law add as much at the most."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -236,32 +235,16 @@ class TimeSteppingObjective:
         sag[:, : by_kind.shape[1]] = by_kind
         return sag
 
-    def without_impossible_memories(self, values: Real, states: Real) -> Real | None:
-        """Return initial states without memories that no friction can have, None where there are none such.
+    def with_possible_memories(self, states: Real) -> Real:
+        """Return initial states with memories that friction can have.
 
-        Accelerations do not tell a friction's force from a spring's while neither changes: a drop may be explained for a
-        while by a friction that holds against where the vehicle stands. Its memory is set to zero, and the vehicle to where
-        all forces are what they were.
+        A drop in which some friction holds with much more than it can begins with all of its frictions sliding, at the most.
 
         Parameters
         ----------
-        values
-            Parameters, SI, shape (parameter,).
         states
             {X, Ẋ} and memories, shape (drop, state + memory).
         """
-        forces, size = self.models_by_kind[0].forces, self.state_size
-        X, V, memories = np.split(states + self.sag(values), [self.coordinates, size], axis=1)
-        impossible = np.abs(memories) > _MOST_MEMORY
-        if not impossible.any():
-            return None
-        travel = X @ forces.rows.at(values).T
-        still = np.zeros_like(travel)  # a friction's force is its memory, whatever the rate
-        answer = forces.at(values).evaluate(ElementInput(travel, still, still, memories))
-        directions = np.array([model.forces.directions(values) for model in self.models_by_kind])[self.kind]
-        lost = np.einsum(
-            "dm,dmx->dx", np.where(impossible, memories, 0.0) * answer.by_memory, directions[:, forces.memory_rows]
-        )
-        stiffness = np.array([model.linear.matrices(values).K for model in self.models_by_kind])[self.kind]
-        X = X + np.linalg.solve(stiffness, lost[:, :, None])[:, :, 0]
-        return np.hstack([X, V, np.where(impossible, 0.0, memories)]) - self.sag(values)
+        motion, memories = np.split(states, [self.state_size], axis=1)
+        is_impossible = np.any(np.abs(memories) > _MOST_MEMORY, axis=1, keepdims=True)
+        return np.hstack([motion, np.where(is_impossible, np.clip(memories, -1.0, 1.0), memories)])
