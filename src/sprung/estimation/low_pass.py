@@ -102,6 +102,11 @@ class SampledLowPass(NamedTuple):
             return cls(None, rate, 0)
         return cls(low_pass, rate, round(low_pass.delay * rate))
 
+    @property
+    def remaining_delay(self) -> float:
+        """What is left of its delay of slow motions, s: half a sample at the most."""
+        return 0.0 if self.low_pass is None else self.low_pass.delay - self.lag / self.rate
+
     def at(self, finer: int) -> SampledLowPass:
         """Return the low-pass of signals that are sampled faster, with the same delay.
 

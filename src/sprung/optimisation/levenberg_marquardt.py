@@ -37,6 +37,10 @@ _LOWERED, _USUAL, _EASED, _RAISED = 100.0, 10.0, 3.0, 8.0
 """Factors by which the damping falls after a step that gained what was expected, after others that gained, and after these
 where the start is far away; and by which it rises after one that gained little."""
 
+_IDLE = 3
+"""Steps in turn, each of which gains less than the tolerance, after which none is expected to: at a kink of the likelihood a
+gain is expected that no step brings."""
+
 _FIRM = 1.0  # damping above which a small gain says nothing of what is left to gain
 
 NONE_ELIMINATED: Real = np.zeros((2, 0))
@@ -162,7 +166,7 @@ def maximise(
     -------
     Maximum
     """
-    point, before = start, np.inf
+    point, before, idle = start, np.inf, 0
     for steps in range(most_steps):
         equations = problem.normal_equations(point)
         if stop is not None and stop(point, equations):
@@ -176,11 +180,12 @@ def maximise(
             return Maximum(
                 point, steps, converged=equations.step(_MOST_DAMPING, of_eliminated=_MOST_DAMPING)[1] < _STALLED
             )
-        point, damping, gain = found
+        point, damping, gain, realised = found
+        idle = idle + 1 if realised < tolerance else 0
         # What the steps to come will gain, if they go on shrinking as the last two did.
         ratio = min(gain / before, _SLOWEST) if before < np.inf else _SLOWEST
         before = gain
-        if gain * min(ratio / (1 - ratio), 1.0) < tolerance and damping < _FIRM:
+        if idle == _IDLE or (gain * min(ratio / (1 - ratio), 1.0) < tolerance and damping < _FIRM):
             return Maximum(point, steps + 1, converged=True)
     return Maximum(point, most_steps, converged=False)
 
@@ -193,11 +198,11 @@ def _gaining_step(
     longest: float,
     tolerance: float,
     cautious: bool,
-) -> tuple[Point, float, float] | None:
-    """Return the point a step further that does not lose, the next damping and the gain; None if there is none.
+) -> tuple[Point, float, float, float] | None:
+    """Return the point a step further that does not lose, the next damping, and the gain to go by and that which was realised.
 
-    The gain is what was expected, or what came of it where that is more: as noise levels follow the residuals, a step may gain
-    many times what was expected at the old ones, and the steps to come likewise.
+    None if there is none. The gain to go by is what was expected, or what came of it where that is more: as noise levels follow
+    the residuals, a step may gain many times what was expected at the old ones, and the steps to come likewise.
 
     In a curved valley the straight way leads up its wall, and only the next step down again, further along: where the first
     step loses, one more is tried from there (the watchdog). No step is tried that would gain too little.
@@ -215,12 +220,12 @@ def _gaining_step(
             ratio = gain / max(expected, 1e-6 * gain, np.finfo(float).tiny)
             # The damping that this step needed is about what the next one will need.
             following = _next_damping(damping, ratio, cautious) if first or not cautious else damping / _EASED
-            return tried, following, max(expected, gain)
+            return tried, following, max(expected, gain), gain
         if first and np.isfinite(gain):
             back, _ = problem.normal_equations(tried).step(damping, longest)
             second_point, further = problem.trial(tried, back, of_eliminated)
             if gain + further > 0:
-                return second_point, damping, max(expected, gain + further)
+                return second_point, damping, max(expected, gain + further), gain + further
             first = False
         damping, raised = max(damping, 1e-8) * raised, raised * (_FASTER if cautious else 1.0)
     return None

@@ -10,16 +10,22 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
-from sprung.estimation import HIGHEST_CORNER, LowPass
+from sprung.estimation import HIGHEST_CORNER, LowPass, SampledLowPass
 from sprung.progress import Step
 from sprung.selection.search import ModelSearch
+
+Real = NDArray[np.float64]
 
 _ORDER = 4
 """Of the anti-alias filters of loggers."""
 
-_CORNER, _RATIO = 100.0, 1.6
+_CORNER, _RATIO = 100.0, 1.25
 """Corner that is tried first, Hz, and how far apart others are; half as far around one that was found."""
+
+_COLOURED = 1.1
+"""Overdispersion from which a low-pass is looked for: it moves what is left by little."""
 
 _SAME = 0.05
 """Relative difference of corners that is none in practice."""
@@ -47,12 +53,12 @@ def select_low_pass(search: ModelSearch) -> ModelSearch:
     ModelSearch
     """
     structure = search.structure
-    if not structure.is_nonlinear or structure.low_pass is not None or not search.is_overdispersed:
+    if not structure.is_nonlinear or structure.low_pass is not None or search.overdispersion < _COLOURED:
         return search
-    corner = _likeliest_corner(search, _CORNER, _RATIO)
-    if corner is None:
+    likeliest = _likeliest(search, _CORNER, _RATIO)
+    if likeliest is None:
         return search
-    found = search.refit(replace(structure, low_pass=LowPass(corner, _ORDER)))
+    found = _refit_behind(*likeliest)
     return found if found.gain_over(search) > search.required_of_switch else search
 
 
@@ -71,22 +77,28 @@ def confirm_low_pass(search: ModelSearch) -> ModelSearch:
     present = search.structure.low_pass
     if present is None:
         return search
-    corner = _likeliest_corner(search, present.corner, _RATIO**0.5)
-    if corner is not None and abs(np.log(corner / present.corner)) < _SAME:
-        return search
-    return search.refit(replace(search.structure, low_pass=None if corner is None else LowPass(corner, _ORDER)))
+    likeliest = _likeliest(search, present.corner, _RATIO**0.5)
+    if likeliest is None:
+        return search.refit(replace(search.structure, low_pass=None), states=_states_behind(search, None))
+    _, corner = likeliest
+    return search if abs(np.log(corner / present.corner)) < _SAME else _refit_behind(*likeliest)
 
 
-def _likeliest_corner(search: ModelSearch, first: float, ratio: float) -> float | None:
-    """Return the corner that explains the beginnings of the decays best, climbed to from a first one, Hz; None for none."""
+def _likeliest(search: ModelSearch, first: float, ratio: float) -> tuple[ModelSearch, float] | None:
+    """Return the corner that explains the beginnings of the decays best, climbed to from a first one, and a fit near to it.
+
+    Hz; None where none explains enough.
+    """
     highest = HIGHEST_CORNER * min(decay.rate for decay in search.decays)
     search.progress(Step("looking for a low-pass of the loggers"))
-    without = _fit_behind(search, np.inf)
+    without = _begin_behind(search, np.inf)
+    fits: dict[float, ModelSearch] = {}
     gains: dict[float, float] = {}
     waiting = [min(first, 0.9 * highest)]
     while waiting := [corner for corner in waiting if _LOWEST < corner < highest]:
         for corner in waiting:
-            gains[corner] = _fit_behind(search, corner).gain_over(without)
+            fits[corner] = _begin_behind(_nearest(fits, corner) or search, corner)
+            gains[corner] = fits[corner].gain_over(without)
         best = max(gains, key=lambda corner: gains[corner])
         # Where one that is too low only loses, a higher one is tried, and then none.
         lower = [best / ratio] * (best == min(gains) and gains[best] > 0)
@@ -94,17 +106,53 @@ def _likeliest_corner(search: ModelSearch, first: float, ratio: float) -> float 
     if not max(gains.values(), default=0.0) > search.required_of_switch:
         return None
     while (between := _between(gains)) is not None:
-        gains[between] = _fit_behind(search, between).gain_over(without)
-    return _vertex(gains)
+        fits[between] = _begin_behind(_nearest(fits, between) or search, between)
+        gains[between] = fits[between].gain_over(without)
+    corner = _vertex(gains)
+    return _nearest(fits, corner) or search, corner
 
 
-def _fit_behind(search: ModelSearch, corner: float) -> ModelSearch:
+def _nearest(fits: Mapping[float, ModelSearch], corner: float) -> ModelSearch | None:
+    """Return the fit behind the low-pass whose corner is nearest to another one; None where there is none yet."""
+    return fits[min(fits, key=lambda other: abs(np.log(other / corner)))] if fits else None
+
+
+def _begin_behind(search: ModelSearch, corner: float) -> ModelSearch:
     """Fit the model behind a low-pass to the beginnings of the decays.
 
     One at infinity does nothing, but motions before it are stepped as finely as those before another one.
     """
-    behind = replace(search.structure, low_pass=LowPass(corner, _ORDER))
-    return search.refit(behind, _ITERATIONS, beginning_only=True)
+    low_pass = LowPass(corner, _ORDER)
+    behind = replace(search.structure, low_pass=low_pass)
+    return search.refit(behind, _ITERATIONS, beginning_only=True, states=_states_behind(search, low_pass))
+
+
+def _refit_behind(search: ModelSearch, corner: float) -> ModelSearch:
+    """Fit the model behind a low-pass to the whole decays."""
+    low_pass = LowPass(corner, _ORDER)
+    return search.refit(replace(search.structure, low_pass=low_pass), states=_states_behind(search, low_pass))
+
+
+def _states_behind(search: ModelSearch, low_pass: LowPass | None) -> Real:
+    """Return states and memories of each drop with which slow motions come behind another low-pass when they came.
+
+    Part of a sample is enough to lead a fit astray: wheels move by many times the noise in it.
+
+    Returns
+    -------
+    ndarray
+        SI, shape (drop, state + memory).
+    """
+    states = []
+    for drop, decay in enumerate(search.fit.decays):
+        before, after = (
+            SampledLowPass.of(one, decay.rate).remaining_delay for one in (search.structure.low_pass, low_pass)
+        )
+        later = (after - before) * decay.rate
+        # The parabola through the first three samples.
+        weights = (1 - later) * (2 - later) / 2, later * (2 - later), later * (later - 1) / 2
+        states.append(search.fit.motion(drop, 0, 3) @ np.array(weights))
+    return np.array(states)
 
 
 def _between(gains: Mapping[float, float]) -> float | None:

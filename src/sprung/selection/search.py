@@ -169,7 +169,12 @@ class ModelSearch:
         return replace(self, steps=(*self.steps, *more))
 
     def refit(
-        self, structure: ModelStructure, most: int = 100, beginning_only: bool = False, enough: float | None = None
+        self,
+        structure: ModelStructure,
+        most: int = 100,
+        beginning_only: bool = False,
+        enough: float | None = None,
+        states: Real | None = None,
     ) -> ModelSearch:
         """Fit another structure from here.
 
@@ -184,12 +189,12 @@ class ModelSearch:
         enough
             Expected gain in log-likelihood at which to stop; without it, a tenth of a standard error, or one where motions are
             stepped: a term has to gain many times as much.
+        states
+            {X, Ẋ} and memories of each drop to begin with, SI, shape (drop, state + memory), where these are not the fit's.
         """
         if enough is None:
             enough = self.overdispersion if structure.is_time_stepped else NEAR
-        fit = fit_structure(
-            structure, self.decays, self.fit, enough, self.progress, most=most, beginning_only=beginning_only
-        )
+        fit = fit_structure(structure, self.decays, self.fit, enough, self.progress, states, beginning_only, most)
         return replace(self, structure=structure, fit=fit)
 
     def refit_as(self, other: ModelSearch) -> ModelSearch:

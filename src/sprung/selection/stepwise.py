@@ -95,9 +95,9 @@ def select_further_terms(search: ModelSearch) -> ModelSearch:
         search, fitted = _try_scored(search, tried)
         tried |= {*fitted}
         if search.structure is before.structure:
-            if not search.is_overdispersed:
-                break
             search = _accept_low_pass(search, _hidden(_untried(search, tried)))
+            if search.structure is before.structure and not search.is_overdispersed:
+                break
         if search.structure is before.structure:
             # What the likeliest of them beats may be needed beside it: it is tried again in the next round.
             search = _accept_rival(search, _rivals(_untried(search, tried)))
