@@ -25,6 +25,18 @@ def test_signals_pass_it_as_its_response_says(order: int, frequency: float) -> N
     assert sampled.lag == round(low_pass.delay * 1000)
 
 
+@pytest.mark.parametrize("corner", [60.0, 90.0, 100.0, 125.0, 160.0, 250.0])
+def test_slow_motions_come_later_by_what_is_left_of_its_delay(corner: float) -> None:
+    """Of 1 Hz; the delay of a fourth order at 60 Hz is 3.47 samples: 0.47 beyond the lag of 3 are left.
+
+    The numerator is fitted to 3e-4 of its response.
+    """
+    sampled, time = SampledLowPass.of(LowPass(corner, 4), RATE), np.arange(1000) / RATE
+    found = sampled.filtered(np.sin(2 * np.pi * time)[None], axis=1)[0]
+    np.testing.assert_allclose(found[200:-20], np.sin(2 * np.pi * (time - sampled.remaining_delay))[200:-20], atol=5e-4)
+    assert abs(sampled.remaining_delay) <= 0.5 / RATE
+
+
 def test_what_it_remembers_of_earlier_motions_is_free() -> None:
     """Whatever state a filter begins with, its decay is a sum of the free signals, and so is an offset."""
     sampled = SampledLowPass.of(LOGGER, RATE)

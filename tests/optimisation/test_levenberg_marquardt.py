@@ -66,6 +66,19 @@ class Cliff(NamedTuple):
         return point + step, -np.inf
 
 
+class Promising(NamedTuple):
+    """A kink of which one side alone is seen: a gain of one is expected, and each step brings a thousandth of what it says."""
+
+    brings: float
+
+    def normal_equations(self, point: Real) -> NormalEquations:
+        del point
+        return NormalEquations(np.eye(1), np.ones(1), np.eye(1), np.eye(1))
+
+    def trial(self, point: Real, step: Real, _damping: float) -> tuple[Real, float]:
+        return point + step, self.brings
+
+
 class Lagging(NamedTuple):
     """Twice the log-likelihood -x² - f(y)², where y is eliminated, f(y) = arctan y: undamped steps beyond 1.39 diverge."""
 
@@ -211,3 +224,11 @@ def test_few_steps_are_tried_where_little_damping_changes_nothing() -> None:
     found = maximise(bend, np.array([3.0]), tolerance=1e-9, damping=1e-9, most_steps=1, cautious=True)
     assert abs(found.point[0]) < 3.0
     assert len(bend.tried) <= 8
+
+
+def test_at_a_kink_steps_that_bring_nothing_end() -> None:
+    """A gain is expected for ever: after three steps in turn that bring less than the tolerance there is no fourth."""
+    idle = maximise(Promising(1e-3), np.zeros(1), tolerance=0.01, damping=0.0, most_steps=50)
+    assert (idle.steps, idle.converged) == (3, True)
+    busy = maximise(Promising(0.02), np.zeros(1), tolerance=0.01, damping=0.0, most_steps=50)
+    assert (busy.steps, busy.converged) == (50, False)

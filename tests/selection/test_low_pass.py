@@ -14,6 +14,7 @@ from sprung.campaign import Campaign
 from sprung.estimation import LowPass, fit_linear
 from sprung.preprocess import prepare
 from sprung.selection import ModelSearch, choose_structure, confirm_low_pass, select_low_pass
+from sprung.selection.low_pass import states_behind
 from sprung.vehicle import TABLE_1_CAR, Vehicle
 
 RATE, FINER, NOISE = 500.0, 8, 0.01
@@ -79,3 +80,17 @@ def test_without_one_there_is_none() -> None:
     confirmed = confirm_low_pass(completed)
     assert confirmed.structure.low_pass is None
     assert confirmed.gain_over(completed) > 100
+
+
+@pytest.mark.slow
+def test_a_fit_behind_a_low_pass_begins_as_late_as_that_leaves_motions() -> None:
+    """A third of a sample, of 25 m/s² of wheels at 12 Hz, is many times the noise."""
+    search = fitted(LOGGER)
+    behind = replace(search.structure, low_pass=LOGGER)
+    as_before, later = (
+        search.refit(behind, 0, beginning_only=True, states=states) for states in (None, states_behind(search, LOGGER))
+    )
+    best = search.refit(behind, beginning_only=True)
+    lost = [best.fit.loglikelihood - one.fit.loglikelihood for one in (as_before, later)]
+    assert lost[1] < 0.1 * lost[0]
+    np.testing.assert_allclose(states_behind(search, None), search.fit.states, atol=1e-12)

@@ -79,7 +79,7 @@ def confirm_low_pass(search: ModelSearch) -> ModelSearch:
         return search
     likeliest = _likeliest(search, present.corner, _RATIO**0.5)
     if likeliest is None:
-        return search.refit(replace(search.structure, low_pass=None), states=_states_behind(search, None))
+        return search.refit(replace(search.structure, low_pass=None), states=states_behind(search, None))
     _, corner = likeliest
     return search if abs(np.log(corner / present.corner)) < _SAME else _refit_behind(*likeliest)
 
@@ -124,16 +124,16 @@ def _begin_behind(search: ModelSearch, corner: float) -> ModelSearch:
     """
     low_pass = LowPass(corner, _ORDER)
     behind = replace(search.structure, low_pass=low_pass)
-    return search.refit(behind, _ITERATIONS, beginning_only=True, states=_states_behind(search, low_pass))
+    return search.refit(behind, _ITERATIONS, beginning_only=True, states=states_behind(search, low_pass))
 
 
 def _refit_behind(search: ModelSearch, corner: float) -> ModelSearch:
     """Fit the model behind a low-pass to the whole decays."""
     low_pass = LowPass(corner, _ORDER)
-    return search.refit(replace(search.structure, low_pass=low_pass), states=_states_behind(search, low_pass))
+    return search.refit(replace(search.structure, low_pass=low_pass), states=states_behind(search, low_pass))
 
 
-def _states_behind(search: ModelSearch, low_pass: LowPass | None) -> Real:
+def states_behind(search: ModelSearch, low_pass: LowPass | None) -> Real:
     """Return states and memories of each drop with which slow motions come behind another low-pass when they came.
 
     Part of a sample is enough to lead a fit astray: wheels move by many times the noise in it.
