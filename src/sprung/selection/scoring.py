@@ -35,6 +35,9 @@ gain of terms that are far from neutral. After one step towards the term, only w
 _RATE, _DURATION = 250.0, 3.0
 """Hz and s of the thinned decays that are stepped for a score: enough for wheel hop and for all of a usual decay."""
 
+_BEHIND_LOW_PASS = 1.0
+"""s of the decays likewise, where all samples count."""
+
 Scores = dict[str, tuple[float, float]]
 """By term: the expected gain in twice the log-likelihood, and the expected size."""
 
@@ -157,8 +160,8 @@ def _stepped(search: ModelSearch, terms: Sequence[str]) -> Scores:
     alike = [term for term in terms if not TERMS[term].adds_coordinates]
     groups = [alike, *([term] for term in terms if TERMS[term].adds_coordinates)]
     # Behind a low-pass the motion between the samples that are left would be missed.
-    rate = _RATE if search.structure.low_pass is None else np.inf
-    decays, part = thinned(search.decays, rate, _DURATION)
+    few = (_RATE, _DURATION) if search.structure.low_pass is None else (np.inf, _BEHIND_LOW_PASS)
+    decays, part = thinned(search.decays, *few)
     gains = {
         term: gain / part for group in groups if group for term, gain in _score_together(search, decays, group).items()
     }
