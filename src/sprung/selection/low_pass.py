@@ -100,9 +100,10 @@ def _likeliest(search: ModelSearch, first: float, ratio: float) -> tuple[ModelSe
             fits[corner] = _begin_behind(_nearest(fits, corner) or search, corner)
             gains[corner] = fits[corner].gain_over(without)
         best = max(gains, key=lambda corner: gains[corner])
-        # Where one that is too low only loses, a higher one is tried, and then none.
+        # Where one that is too low only loses, a much higher one is tried, and then none.
         lower = [best / ratio] * (best == min(gains) and gains[best] > 0)
-        waiting = lower + [best * ratio] * (best == max(gains) and (gains[best] > 0 or len(gains) == 1))
+        higher = [best * (ratio if gains[best] > 0 else ratio**2)]
+        waiting = lower + higher * (best == max(gains) and (gains[best] > 0 or len(gains) == 1))
     if not max(gains.values(), default=0.0) > search.required_of_switch:
         return None
     while (between := _between(gains)) is not None:
