@@ -184,6 +184,15 @@ def test_friction_is_not_lost_on_the_way_from_an_ordinary_vehicle() -> None:
 
 
 @pytest.mark.long
+def test_no_drop_stays_with_frictions_that_hold_with_more_than_they_can() -> None:
+    """Two drops did, contradicted all others by 15, and hid a low-pass at 100 Hz: doubtful, rubber 19 % wrong."""
+    ((campaign, truth),) = record([draw_test("usual", 1)])
+    outcome = examine(campaign, truth, 900.0)
+    assert (outcome.verdict, outcome.faults) == ("accept", ())
+    assert outcome.worst_scaled[0] < 4
+
+
+@pytest.mark.long
 def test_a_body_that_turns_far_is_no_brake() -> None:
     """Its loaded roll drops differ from all others to second order in the angle: they were left out as with the brake on."""
     ((campaign, truth),) = record([draw_test("tall", 7)])
