@@ -324,7 +324,7 @@ def test_motions_near_to_others_are_those_of_the_steps(extras: tuple[str, ...]) 
             np.testing.assert_allclose(one, other, atol=1e-6 * size)
 
 
-@pytest.mark.parametrize("friction", [0.3, 100.0])
+@pytest.mark.parametrize("friction", [0.0, 0.3, 100.0])
 def test_a_small_friction_does_not_keep_segments_open(friction: float, monkeypatch: pytest.MonkeyPatch) -> None:
     """Its memory turns round within a micrometre, and no force worth mentioning with it: the motions close all the same."""
     extras = ("friction", "rebound")

@@ -108,8 +108,8 @@ def fit_nonlinear(
     known = statements_of(known, sensors, next(iter(models.values())).names)
     steps, values = 0, expected_nuisances(known) | dict(start)
     fine = _longest_step(models, values)
-    # What a low-pass makes of a friction that turns round depends on when it does: its corner is found by fits to beginnings.
     beginnings = [_beginning(decay) for decay in decays]
+    # What a low-pass makes of a friction that turns round depends on when it does: its corner is found by fits to beginnings.
     stages = (
         [
             (

@@ -79,7 +79,7 @@ def confirm_low_pass(search: ModelSearch) -> ModelSearch:
         return search
     likeliest = _likeliest(search, present.corner, _RATIO**0.5)
     if likeliest is None:
-        return search.refit(replace(search.structure, low_pass=None), states=states_behind(search, None))
+        return _refit_behind(search, None)
     _, corner = likeliest
     return search if abs(np.log(corner / present.corner)) < _SAME else _refit_behind(*likeliest)
 
@@ -97,7 +97,7 @@ def _likeliest(search: ModelSearch, first: float, ratio: float) -> tuple[ModelSe
     waiting = [min(first, 0.9 * highest)]
     while waiting := [corner for corner in waiting if _LOWEST < corner < highest]:
         for corner in waiting:
-            fits[corner] = _begin_behind(_nearest(fits, corner) or search, corner)
+            fits[corner] = _begin_behind(_nearest(fits, corner, search), corner)
             gains[corner] = fits[corner].gain_over(without)
         best = max(gains, key=lambda corner: gains[corner])
         # Where one that is too low only loses, a much higher one is tried, and then none.
@@ -107,15 +107,15 @@ def _likeliest(search: ModelSearch, first: float, ratio: float) -> tuple[ModelSe
     if not max(gains.values(), default=0.0) > search.required_of_switch:
         return None
     while (between := _between(gains)) is not None:
-        fits[between] = _begin_behind(_nearest(fits, between) or search, between)
+        fits[between] = _begin_behind(_nearest(fits, between, search), between)
         gains[between] = fits[between].gain_over(without)
     corner = _vertex(gains)
-    return _nearest(fits, corner) or search, corner
+    return _nearest(fits, corner, search), corner
 
 
-def _nearest(fits: Mapping[float, ModelSearch], corner: float) -> ModelSearch | None:
-    """Return the fit behind the low-pass whose corner is nearest to another one; None where there is none yet."""
-    return fits[min(fits, key=lambda other: abs(np.log(other / corner)))] if fits else None
+def _nearest(fits: Mapping[float, ModelSearch], corner: float, first: ModelSearch) -> ModelSearch:
+    """Return the fit behind the low-pass whose corner is nearest to another one; the first one where there is none yet."""
+    return fits[min(fits, key=lambda other: abs(np.log(other / corner)))] if fits else first
 
 
 def _begin_behind(search: ModelSearch, corner: float) -> ModelSearch:
@@ -123,15 +123,16 @@ def _begin_behind(search: ModelSearch, corner: float) -> ModelSearch:
 
     One at infinity does nothing, but motions before it are stepped as finely as those before another one.
     """
-    low_pass = LowPass(corner, _ORDER)
-    behind = replace(search.structure, low_pass=low_pass)
-    return search.refit(behind, _ITERATIONS, beginning_only=True, states=states_behind(search, low_pass))
+    return _refit_behind(search, corner, _ITERATIONS, beginning_only=True)
 
 
-def _refit_behind(search: ModelSearch, corner: float) -> ModelSearch:
-    """Fit the model behind a low-pass to the whole decays."""
-    low_pass = LowPass(corner, _ORDER)
-    return search.refit(replace(search.structure, low_pass=low_pass), states=states_behind(search, low_pass))
+def _refit_behind(
+    search: ModelSearch, corner: float | None, most: int = 100, beginning_only: bool = False
+) -> ModelSearch:
+    """Fit the model behind a low-pass, or behind none."""
+    low_pass = None if corner is None else LowPass(corner, _ORDER)
+    structure = replace(search.structure, low_pass=low_pass)
+    return search.refit(structure, most, beginning_only, states=states_behind(search, low_pass))
 
 
 def states_behind(search: ModelSearch, low_pass: LowPass | None) -> Real:

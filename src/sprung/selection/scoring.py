@@ -160,8 +160,8 @@ def _stepped(search: ModelSearch, terms: Sequence[str]) -> Scores:
     alike = [term for term in terms if not TERMS[term].adds_coordinates]
     groups = [alike, *([term] for term in terms if TERMS[term].adds_coordinates)]
     # Behind a low-pass the motion between the samples that are left would be missed.
-    few = (_RATE, _DURATION) if search.structure.low_pass is None else (np.inf, _BEHIND_LOW_PASS)
-    decays, part = thinned(search.decays, *few)
+    rate, duration = (_RATE, _DURATION) if search.structure.low_pass is None else (np.inf, _BEHIND_LOW_PASS)
+    decays, part = thinned(search.decays, rate, duration)
     gains = {
         term: gain / part for group in groups if group for term, gain in _score_together(search, decays, group).items()
     }

@@ -147,7 +147,7 @@ def integrate_near(
         )
         similar = np.concatenate([motions[..., state:-1], surplus], axis=3)
         ends = by_drop(np.concatenate([motions[-1:, ..., :state], kept[-1:]], axis=3))[:, :, 0]
-        transitions, before = _learnt(transitions, ends - before, changes / scale, scale), ends
+        transitions, before = _learnt(transitions, ends - before, changes, scale), ends
         changes = np.zeros_like(starts)
         for segment in range(number - 1):
             moved = transitions[:, segment] @ changes[:, segment, :, None]
@@ -181,13 +181,14 @@ def _learnt(transitions: Array, moved: Array, changes: Array, scale: Array) -> A
     moved
         How the ends moved as the starts changed, SI, shape (drop, segment, start).
     changes
-        Of the starts, as parts of the scale, shape (drop, segment, start).
+        Of the starts, SI, shape (drop, segment, start).
     scale
-        Of each of them, SI, shape (start,).
+        Of each of them, SI, shape (start,); infinite where it does not count.
     """
-    squares = np.sum(changes**2, axis=-1, keepdims=True)
-    missed = moved - (transitions @ (changes * scale)[..., None])[..., 0]
-    along = np.divide(changes, squares * scale, out=np.zeros_like(changes), where=squares > _CLOSED**2)
+    parts = changes / scale
+    squares = np.sum(parts**2, axis=-1, keepdims=True)
+    missed = moved - (transitions @ changes[..., None])[..., 0]
+    along = np.divide(parts / scale, squares, out=np.zeros_like(parts), where=squares > _CLOSED**2)
     learnt: Array = transitions + missed[..., :, None] * along[..., None, :]
     return learnt
 
@@ -212,6 +213,9 @@ def _scale(stepper: Stepper, starts: Array, forces: Array) -> Array:
     motion, memories = np.split(largest, [state])
     at_rest = np.zeros(rows)
     by_memory = stepper.forces_at.evaluate(ElementInput(at_rest, at_rest, at_rest, np.zeros(len(memories)))).by_memory
-    effects = np.maximum(np.abs(by_memory), _TINY)
+    effects = np.abs(by_memory)
+    unnoticed = np.divide(
+        np.abs(forces[..., :rows]).max(), effects, out=np.full_like(effects, np.inf), where=effects > 0
+    )
     scales = [np.full(state // 2, max(part.max(), _TINY)) for part in np.split(motion, 2)]
-    return np.concatenate([*scales, np.maximum(memories, np.abs(forces[..., :rows]).max() / effects)])
+    return np.concatenate([*scales, np.maximum(memories, unnoticed)])
