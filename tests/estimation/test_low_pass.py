@@ -48,6 +48,15 @@ def test_what_it_remembers_of_earlier_motions_is_free() -> None:
     np.testing.assert_allclose(free[:300] @ (free[:300].T @ decay), decay, atol=1e-9)
 
 
+def test_a_signal_that_did_not_pass_it_may_be_given_the_same_freedom() -> None:
+    passed, free = (SampledLowPass.of(LowPass(80.0, 4, passes_all), RATE) for passes_all in (False, True))
+    signal = np.random.default_rng(5).standard_normal((2, 60))
+    np.testing.assert_array_equal(free.filtered(signal, axis=1)[:, : -free.lag], signal[:, : -free.lag])
+    np.testing.assert_array_equal(free.filtered(signal, axis=1)[:, -free.lag :], 0.0)
+    np.testing.assert_array_equal(free.free_signals(60), passed.free_signals(60))
+    assert (free.lag, free.remaining_delay) == (passed.lag, 0.0)
+
+
 def test_above_the_samples_it_does_nothing() -> None:
     signals = np.random.default_rng(1).standard_normal((2, 50))
     for low_pass in (None, LowPass(210.0, 4)):

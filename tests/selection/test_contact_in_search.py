@@ -9,9 +9,10 @@ import pytest
 from sprung.estimation import fit_linear
 from sprung.preprocess import prepare
 from sprung.selection import SEPARATE_TRACKS, ModelSearch, choose_structure
-from sprung.selection.contact import from_contact, is_likelier
+from sprung.selection.contact import begin_no_later, from_contact, is_likelier
 from sprung.selection.stepwise import accept_likeliest
 from sprung.simulation import simulate
+from sprung.uncertainty import KnownValue
 from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, Vehicle
 
 
@@ -42,6 +43,25 @@ def test_models_are_compared_from_the_later_start_on(plain: ModelSearch, with_ba
     one, other = (shortened(plain), with_bar) if late == "plain" else (plain, shortened(with_bar))
     assert is_likelier(other, one)
     assert not is_likelier(one, other)
+
+
+def test_decays_that_a_model_let_begin_later_begin_where_the_accelerometers_show_contact(plain: ModelSearch) -> None:
+    """Its own states lead back there; what begins no later stays as it is."""
+    later = replace(plain, decays=(plain.decays[0].shifted(40), plain.decays[1])).refit(plain.structure)
+    found = begin_no_later(later, plain.decays)
+    assert [decay.start for decay in found.decays] == [decay.start for decay in plain.decays]
+    assert found.fit.loglikelihood == pytest.approx(plain.fit.loglikelihood, abs=0.1)
+    assert begin_no_later(found, later.decays) is found
+
+
+def test_a_fit_beside_noise_is_to_leave_no_more(with_bar: ModelSearch) -> None:
+    """Of no misfit there is no part: any other fit that leaves one leaves too much."""
+    truth = TABLE_1_CAR.parameters
+    known = {"k_tf": KnownValue(1.5 * truth["k_tf"]), "m_s": KnownValue(truth["m_s"])}
+    astray = with_bar.refit(replace(with_bar.structure, known=known))
+    assert with_bar.leaves_misfit(astray.fit, 0.9)
+    assert not with_bar.leaves_misfit(with_bar.fit, 0.9)
+    assert not astray.leaves_misfit(with_bar.fit, 0.1)
 
 
 @pytest.mark.parametrize("first", ["gravity", SEPARATE_TRACKS])

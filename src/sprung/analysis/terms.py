@@ -14,6 +14,7 @@ from sprung.selection import (
     TERMS,
     ModelSearch,
     SelectionStep,
+    begin_no_later,
     fit_forced_terms,
     from_contact,
     leave_out_refused,
@@ -86,7 +87,10 @@ def select_nonlinear_terms(run: Analysis, progress: Progress) -> Analysis:
         plain = replace(
             plain, carried_at=found.carried_at, assumed_heights=found.assumed_heights, sinking=found.sinking
         )
-        search = select_nonlinear(before, plain)
+        early = begin_no_later(before, run.prepared.decays)
+        search = select_nonlinear(early, plain)
+        if early is not before and (search.has_model_error or not search.structure.is_nonlinear):
+            search = select_nonlinear(replace(before, steps=search.steps), plain)
     if search.structure.is_nonlinear:
         # The search compares fits to beginnings, or to a standard error: at the optimum a term may turn out to be nothing.
         last = from_contact(search)

@@ -36,10 +36,13 @@ class LowPass(NamedTuple):
         At which its gain is 0.71, Hz.
     order
         1 for one resistor and one capacitor.
+    passes_all
+        Whether nothing passed it, but its memory counts as unknown all the same: so much freedom a fit behind it has anyway.
     """
 
     corner: float
     order: int
+    passes_all: bool = False
 
     @property
     def poles(self) -> Complex:
@@ -105,7 +108,8 @@ class SampledLowPass(NamedTuple):
     @property
     def remaining_delay(self) -> float:
         """What is left of its delay of slow motions, s: half a sample at the most."""
-        return 0.0 if self.low_pass is None else self.low_pass.delay - self.lag / self.rate
+        has_none = self.low_pass is None or self.low_pass.passes_all
+        return 0.0 if has_none or self.low_pass is None else self.low_pass.delay - self.lag / self.rate
 
     def at(self, finer: int) -> SampledLowPass:
         """Return the low-pass of signals that are sampled faster, with the same delay.
@@ -136,8 +140,10 @@ class SampledLowPass(NamedTuple):
         """
         if self.low_pass is None:
             return signals
-        numerator, denominator = self.coefficients
         along = np.moveaxis(signals, axis, 0)
+        if self.low_pass.passes_all:
+            return np.moveaxis(np.concatenate([along[: -self.lag or None], np.zeros_like(along[: self.lag])]), 0, axis)
+        numerator, denominator = self.coefficients
         before = np.multiply.outer(lfilter_zi(numerator, denominator), along[0])
         later = np.asarray(lfilter(numerator, denominator, along, axis=0, zi=before)[0])
         whole = np.concatenate([later[self.lag :], np.zeros_like(later[: self.lag])])

@@ -6,7 +6,7 @@ from sprung.selection.backward_elimination import (
     leave_out_unneeded,
     needed_terms,
 )
-from sprung.selection.contact import final_tolerance, from_contact
+from sprung.selection.contact import begin_no_later, final_tolerance, from_contact
 from sprung.selection.description import TermDescription, describe_terms
 from sprung.selection.error_budget import FALSE_ALARM_SHARE, required_gain
 from sprung.selection.finite_rotation import select_finite_rotation
@@ -41,6 +41,7 @@ __all__ = [
     "ModelTerm",
     "SelectionStep",
     "TermDescription",
+    "begin_no_later",
     "choose_structure",
     "confirm_low_pass",
     "describe_terms",

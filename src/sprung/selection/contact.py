@@ -88,6 +88,27 @@ def is_likelier(search: ModelSearch, other: ModelSearch) -> bool:
     return search.delta_bic(other) > 0
 
 
+def begin_no_later(search: ModelSearch, decays: Sequence[FreeDecay]) -> ModelSearch:
+    """Let decays begin no later than other decays of the same drops do, and fit the model to them.
+
+    Parameters
+    ----------
+    search
+        The present model and its fit.
+    decays
+        As the accelerometers show them: all tyres are on the ground. To a model that lacks something they may seem to hop for
+        longer, and what it lacks shows best in the samples that it gave up.
+
+    Returns
+    -------
+    ModelSearch
+        As given where none begins later.
+    """
+    latest = {decay.file: decay.start for decay in decays}
+    starts = [min(decay.start, latest.get(decay.file, decay.start)) for decay in search.decays]
+    return _begun_at(search, starts)
+
+
 def _begun_at(search: ModelSearch, starts: Sequence[float]) -> ModelSearch:
     """Return the search with decays that begin at later times, s, and its model fitted to them."""
     shifts = [round((start - decay.start) * decay.rate) for start, decay in zip(starts, search.decays, strict=True)]

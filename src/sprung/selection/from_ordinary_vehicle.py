@@ -69,7 +69,7 @@ def select_from_ordinary_vehicle(search: ModelSearch, plain: ModelStructure) -> 
     search
         The present model and its fit.
     plain
-        The structure without anything that the recordings brought into it.
+        The structure without anything that the recordings brought into it. A body that they show to be flexible stays so.
 
     Returns
     -------
@@ -80,7 +80,8 @@ def select_from_ordinary_vehicle(search: ModelSearch, plain: ModelStructure) -> 
     if not terms:
         return search
     search.progress(Step("fitting an ordinary vehicle with every usual term"))
-    found = fit_usual_terms(search, plain.with_terms((*plain.terms, *terms)))
+    flexible = tuple(name for name in search.selected if name in (TWIST, BENDING))
+    found = fit_usual_terms(search, plain.with_terms((*plain.terms, *flexible, *terms)))
     if found is None or search.leaves_misfit(found.fit, MISFIT_LEFT):
         against = "together they do not explain what the model so far leaves"
         return search.recorded(dict.fromkeys(terms, 0.0), True, False, against)

@@ -36,8 +36,8 @@ _NARROW, _FINE = 0.25, 0.02
 _LOWEST = 25.0
 """Hz below which no logger cuts off the motion of wheels."""
 
-_ITERATIONS = 3
-"""Iterations at the most before corners are compared: a low-pass moves the optimum by little."""
+_ITERATIONS, _MOST = 3, 100
+"""Iterations at the most before corners are compared, as a low-pass moves the optimum by little; and of a whole fit."""
 
 
 def select_low_pass(search: ModelSearch) -> ModelSearch:
@@ -58,7 +58,8 @@ def select_low_pass(search: ModelSearch) -> ModelSearch:
     likeliest = _likeliest(search, _CORNER, _RATIO)
     if likeliest is None:
         return search
-    found = _refit_behind(*likeliest)
+    near, corner = likeliest
+    found = _refit_behind(near, LowPass(corner, _ORDER))
     return found if found.gain_over(search) > search.required_of_switch else search
 
 
@@ -80,8 +81,8 @@ def confirm_low_pass(search: ModelSearch) -> ModelSearch:
     likeliest = _likeliest(search, present.corner, _RATIO**0.5)
     if likeliest is None:
         return _refit_behind(search, None)
-    _, corner = likeliest
-    return search if abs(np.log(corner / present.corner)) < _SAME else _refit_behind(*likeliest)
+    near, corner = likeliest
+    return search if abs(np.log(corner / present.corner)) < _SAME else _refit_behind(near, LowPass(corner, _ORDER))
 
 
 def _likeliest(search: ModelSearch, first: float, ratio: float) -> tuple[ModelSearch, float] | None:
@@ -91,7 +92,9 @@ def _likeliest(search: ModelSearch, first: float, ratio: float) -> tuple[ModelSe
     """
     highest = HIGHEST_CORNER * min(decay.rate for decay in search.decays)
     search.progress(Step("looking for a low-pass of the loggers"))
-    without = _begin_behind(search, np.inf)
+    # From behind a low-pass to none it may be far.
+    most = _ITERATIONS if search.structure.low_pass is None else _MOST
+    without = _refit_behind(search, LowPass(np.inf, _ORDER), most, beginning_only=True)
     fits: dict[float, ModelSearch] = {}
     gains: dict[float, float] = {}
     waiting = [min(first, 0.9 * highest)]
@@ -109,6 +112,11 @@ def _likeliest(search: ModelSearch, first: float, ratio: float) -> tuple[ModelSe
     while (between := _between(gains)) is not None:
         fits[between] = _begin_behind(_nearest(fits, between, search), between)
         gains[between] = fits[between].gain_over(without)
+    best = max(gains, key=lambda corner: gains[corner])
+    # What records may show behind it is free, as nothing tells what it remembers: without it a fit has to be as free.
+    free = _refit_behind(without, LowPass(best, _ORDER, passes_all=True), beginning_only=True)
+    if not fits[best].gain_over(free) > search.required_of_switch:
+        return None
     corner = _vertex(gains)
     return _nearest(fits, corner, search), corner
 
@@ -123,14 +131,13 @@ def _begin_behind(search: ModelSearch, corner: float) -> ModelSearch:
 
     One at infinity does nothing, but motions before it are stepped as finely as those before another one.
     """
-    return _refit_behind(search, corner, _ITERATIONS, beginning_only=True)
+    return _refit_behind(search, LowPass(corner, _ORDER), _ITERATIONS, beginning_only=True)
 
 
 def _refit_behind(
-    search: ModelSearch, corner: float | None, most: int = 100, beginning_only: bool = False
+    search: ModelSearch, low_pass: LowPass | None, most: int = _MOST, beginning_only: bool = False
 ) -> ModelSearch:
     """Fit the model behind a low-pass, or behind none."""
-    low_pass = None if corner is None else LowPass(corner, _ORDER)
     structure = replace(search.structure, low_pass=low_pass)
     return search.refit(structure, most, beginning_only, states=states_behind(search, low_pass))
 

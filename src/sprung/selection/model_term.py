@@ -68,6 +68,8 @@ class ModelTerm:
         Lowest and highest value that its character has.
     counterpart
         Term that takes its place where its character is none of its kind: both move alike.
+    part
+        Part of the vehicle that has one of several laws, of which it is one: scores do not tell them apart.
     on_request
         Whether so few vehicles have it that it is in the model only where the campaign states it.
     """
@@ -89,6 +91,7 @@ class ModelTerm:
     character: Callable[[Values], Sequence[float]] | None = None
     band: tuple[float, float] = (0.0, np.inf)
     counterpart: str = ""
+    part: str = ""
     on_request: bool = False
 
     @property

@@ -51,6 +51,7 @@ def _air_springs(name: str, height: str, levelled: str) -> ModelTerm:
             ),
             again="{axle} ones with a column of {1}",
         ),
+        part="spring",
     )
 
 
@@ -204,6 +205,7 @@ NONLINEAR_TERMS = (
             ((lambda p, axle: 100 * _STROKE * p[parameter_name("p", axle)], "%"),),
             again="{axle} ones by {0}",
         ),
+        part="spring",
     ),
     _air_springs("air", "e", ""),
     _air_springs("levelled-air", "e_l", ", levelled under every load,"),

@@ -119,8 +119,16 @@ def _try_scored(search: ModelSearch, tried: Collection[str]) -> tuple[ModelSearc
     _, scores = score_terms(search, terms)
     ratios = {term: gain / (search.required(term) * search.overdispersion) for term, (gain, _) in scores.items()}
     best = sorted((term for term in terms if ratios[term] > 1), key=lambda term: -ratios[term])[:_TRIED_BESIDE]
-    found, accepted = accept_first(search, best)
-    return confirm_low_pass(found) if accepted else found, best
+    fitted: list[str] = []
+    for term in best:
+        if term not in fitted:
+            laws = _laws_of_part(term, untried)
+            fitted += laws
+            tested = try_likeliest(search, laws)
+            if tested.structure is not search.structure:
+                return confirm_low_pass(tested), fitted
+            search = tested
+    return search, fitted
 
 
 def _untried(search: ModelSearch, tried: Collection[str]) -> list[str]:
@@ -149,6 +157,12 @@ def _accept_low_pass(search: ModelSearch, hidden: Sequence[str]) -> ModelSearch:
 def _hidden(terms: Sequence[str]) -> list[str]:
     """Return the terms that show in no score once a fit of everything at once has lost them, but when the rest is right."""
     return [term for term in terms if TERMS[term].resembles_others]
+
+
+def _laws_of_part(term: str, terms: Sequence[str]) -> list[str]:
+    """Return a term and those of others that are laws of the same part."""
+    part = TERMS[term].part
+    return [term, *(other for other in terms if other != term and part and TERMS[other].part == part)]
 
 
 def _rivals(terms: Sequence[str]) -> list[str]:
@@ -189,16 +203,6 @@ def rank_terms(search: ModelSearch, scores: Scores, weight: float) -> tuple[Mode
     best = max(priority.values(), default=0.0)
     first = {term: TERMS[term].resembles_others and priority[term] > _RESEMBLES * best for term in priority}
     return search, sorted(priority, key=lambda term: (first[term], priority[term]), reverse=True)
-
-
-def accept_first(search: ModelSearch, terms: Sequence[str], among: Sequence[str] = _LINEAR) -> tuple[ModelSearch, bool]:
-    """Fit terms one after the other until one is accepted; and say whether one was."""
-    for term in terms:
-        tried = try_term(search, term, among)
-        if tried.structure.names != search.structure.names:
-            return tried, True
-        search = tried
-    return search, False
 
 
 def accept_likeliest(
