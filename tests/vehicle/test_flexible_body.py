@@ -1,5 +1,7 @@
 """A body that is not one rigid mass: twist, bending, and people on soft seats."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -7,7 +9,7 @@ from numpy.typing import NDArray
 
 import sprung
 from sprung.simulation import drop_from_blocks, static_wheel_loads
-from sprung.vehicle import TABLE_1_CAR, Item, Load, Sensor, Vehicle, coordinates, sensor_rows
+from sprung.vehicle import TABLE_1_CAR, Item, Load, Readout, Sensor, Vehicle, coordinates, sensor_rows
 from sprung.vibration import compute_modes
 
 Array = NDArray[np.float64]
@@ -37,6 +39,21 @@ BAGS = Load(
         Item(mass=80.0, position=(-0.9, -0.4, 0.6)),
     ),
 )
+
+
+@pytest.mark.parametrize("x", [0.2, -1.4, -3.0])
+def test_a_sensor_beside_its_stated_place_reads_what_one_there_does(x: float) -> None:
+    """Where a body bends and twists, it leans otherwise at every place; twist is even here."""
+    car = Vehicle.from_parameters(TWISTS.with_values(u_w=0.0, e_w=0.0).parameters | BENDS.parameters)
+    names, values = tuple(car.parameters), np.array(list(car.parameters.values()))
+    stated = Sensor(channel="stated", on="body", position=(x, 0.6, 0.5), gain_std=0.0, tilt_std=0.0, position_std=0.01)
+    readout = Readout.with_unknowns([stated], names, car.wheelbase)
+    there = replace(stated, position=(x + 0.01, 0.6 - 0.02, 0.5))
+    found = readout.at(np.append(values, [0.01, -0.02]))
+    expected = Readout.of([there], names, car.wheelbase).at(values)
+    # Of the second order: 0.01² / 2 of curvature, 0.01 · 0.02 of twist.
+    assert_allclose(found, expected, rtol=0, atol=2.1e-4)
+    assert np.abs(found - readout.at(np.append(values, [0.0, 0.0]))).max() > 8e-3
 
 
 def test_the_shapes_are_those_of_a_body_that_turns_and_bends_along_its_length() -> None:

@@ -38,8 +38,11 @@ _LOWERED, _USUAL, _EASED, _RAISED = 100.0, 10.0, 3.0, 8.0
 where the start is far away; and by which it rises after one that gained little."""
 
 _IDLE = 3
-"""Steps in turn, each of which gains less than the tolerance, after which none is expected to: at a kink of the likelihood a
-gain is expected that no step brings."""
+"""Steps in turn, each of which gains hardly anything, after which none is expected to: at a kink of the likelihood a gain is
+expected that no step brings."""
+
+_CRAWL, _NEAR = 0.05, 1.0
+"""Part of the expected gain that is hardly anything where no more than so much is expected: one standard error."""
 
 _FIRM = 1.0  # damping above which a small gain says nothing of what is left to gain
 
@@ -181,7 +184,8 @@ def maximise(
                 point, steps, converged=equations.step(_MOST_DAMPING, of_eliminated=_MOST_DAMPING)[1] < _STALLED
             )
         point, damping, gain, realised = found
-        idle = idle + 1 if realised < tolerance else 0
+        crawls = gain < _NEAR and realised < _CRAWL * gain
+        idle = idle + 1 if realised < tolerance or crawls else 0
         # What the steps to come will gain, if they go on shrinking as the last two did.
         ratio = min(gain / before, _SLOWEST) if before < np.inf else _SLOWEST
         before = gain

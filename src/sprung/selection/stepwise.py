@@ -95,7 +95,8 @@ def select_further_terms(search: ModelSearch) -> ModelSearch:
         search, fitted = _try_scored(search, tried)
         tried |= {*fitted}
         if search.structure is before.structure:
-            search = _accept_low_pass(search, _hidden(_untried(search, tried)))
+            untried = _untried(search, tried)
+            search = _accept_low_pass(search, _rivals(untried), _hidden(untried))
             if search.structure is before.structure and not search.is_overdispersed:
                 break
         if search.structure is before.structure:
@@ -142,16 +143,16 @@ def _accept_rival(search: ModelSearch, terms: Sequence[str]) -> ModelSearch:
     return found if found.structure is search.structure else confirm_low_pass(found)
 
 
-def _accept_low_pass(search: ModelSearch, hidden: Sequence[str]) -> ModelSearch:
-    """Accept a low-pass of the loggers if the recordings support one, unless a term that shows in no score explains more.
+def _accept_low_pass(search: ModelSearch, *rivals: Sequence[str]) -> ModelSearch:
+    """Accept a low-pass of the loggers if the recordings support one, unless terms that show in no score explain more.
 
     A low-pass resembles knees, and so does whatever else is missing: it is looked for once nothing else shows.
     """
     found = select_low_pass(search)
     if found.structure is search.structure:
         return search
-    other = _accept_rival(search, hidden)
-    return other if other.gain_over(found) > 0 else found
+    others = (_accept_rival(search, terms) for terms in rivals)
+    return max((found, *others), key=lambda other: other.gain_over(found))
 
 
 def _hidden(terms: Sequence[str]) -> list[str]:

@@ -206,6 +206,24 @@ def body_point(x: float, y: float, names: Collection[str] = (), wheelbase: float
     return Row(constant, {**slopes, "u_w": {"q_w": uneven}, "e_w": {"q_w": -uneven * along}})
 
 
+def body_slopes(x: float, y: float, wheelbase: float = 0.0) -> tuple[Row, Row]:
+    """Change of the vertical displacement of a point of the body by a metre forward and by one to the left: how it leans there.
+
+    Parameters
+    ----------
+    x, y
+        Position, m: forward of the front axle, left of the centreline.
+    wheelbase
+        Of a body that twists or bends, m. Twist counts as even.
+
+    Returns
+    -------
+    forward, left
+    """
+    along = x + wheelbase / 2
+    return Row({"theta": -1.0, "q_w": y, "q_v": -along}), Row({"phi": 1.0, "q_w": along})
+
+
 def pitch(wheelbase: float = 0.0) -> Row:
     """Mean pitch angle of the body, rad; of one that bends with the wheelbase, m."""
     return Row({"theta": 1.0}, {"p_v": {"q_v": sag(wheelbase)}})

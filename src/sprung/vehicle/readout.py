@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from sprung.display import shown
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle.kinematics import Row, body_point
+from sprung.vehicle.kinematics import Row, body_slopes
 from sprung.vehicle.model import Rows
 from sprung.vehicle.nuisances import SENSOR_UNKNOWNS, sensor_unknown
 from sprung.vehicle.response import Motion
@@ -73,7 +73,7 @@ class Readout:
         names
             The parameters, those of the sensors last.
         wheelbase
-            Of a body that twists unevenly, m.
+            Of a body that twists or bends, m.
 
         Raises
         ------
@@ -89,10 +89,12 @@ class Readout:
         read = [sensor.rows(own, wheelbase) for sensor in sensors]
         leaning = bool(np.any(positions[:, [_TILT_X, _TILT_Y]] >= 0))
         orders = tuple(sorted({order for one in read for order in one} | ({0} if leaning else set()))) or (2,)
-        origin, *moved = (body_point(*place) for place in ((0.0, 0.0), (1.0, 0.0), (0.0, 1.0)))
-        moves = [row - origin for row in moved]
-        places = _stacked([dict.fromkeys(one, move) for move in moves for one in read], orders, own)
-        tilts = _stacked([{0: move} for move in moves for _ in read], orders, own)
+        moves = [body_slopes(*(one.position or (0.0, 0.0))[:2], wheelbase) for one in sensors]
+        by_way = list(zip(*moves, strict=True))
+        places = _stacked(
+            [dict.fromkeys(one, move) for way in by_way for one, move in zip(read, way, strict=True)], orders, own
+        )
+        tilts = _stacked([{0: move} for way in by_way for move in way], orders, own)
         placed = Rows(np.concatenate([places.affine, STANDARD_GRAVITY * tilts.affine]))
         return cls(tuple(names), _stacked(read, orders, own), orders, positions, placed)
 
@@ -107,7 +109,7 @@ class Readout:
         names
             The parameters of the vehicle.
         wheelbase
-            Of a body that twists unevenly, m.
+            Of a body that twists or bends, m.
 
         Returns
         -------
