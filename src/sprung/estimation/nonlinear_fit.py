@@ -10,13 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.estimation.fit_result import FitResult
-from sprung.estimation.friction_memories import go_on_with_possible_memories
 from sprung.estimation.linear_fit import NEAR, expected_nuisances
 from sprung.estimation.low_pass import LowPass
 from sprung.estimation.priors import Coordinates, PriorsAndConstraints, UsualValue
 from sprung.estimation.problem import CLOSE_BY, CONVERGED, EstimationProblem
 from sprung.estimation.score_test import score_test
 from sprung.estimation.statements import readout_of, statements_of
+from sprung.estimation.stuck_drops import go_on_with_likelier_states
 from sprung.estimation.time_stepping import TimeSteppingObjective
 from sprung.preprocess import FreeDecay
 from sprung.progress import Progress, Step, silent
@@ -130,7 +130,7 @@ def fit_nonlinear(
         damping = _FAR if is_far else CLOSE_BY
         found = problem.maximise(problem.priors.nearest(values), None, tolerance, damping, most, cautious=is_far)
         if part is not beginnings and most > 1:  # beginnings only compare models, as a single step does
-            found = go_on_with_possible_memories(problem, objective, found, tolerance, most)
+            found = go_on_with_likelier_states(problem, objective, found, tolerance, most)
         states, steps = found.point.at.states, steps + found.steps
         values = dict(zip(problem.priors.coordinates.names, found.point.at.values.tolist(), strict=True))
     # Whoever goes on from here starts with the initial states that were found.
