@@ -26,6 +26,9 @@ the last step leaves less. Forces are solved for to a part of their size, so the
 _SETTLED = 0.03
 """The same as a part of the overdispersion, of a model with errors: a sixth of a standard error."""
 
+_RINGS = 0.03
+"""s for which the filter of a logger rings from what was before a landing: one of 100 Hz to less than a thousandth."""
+
 _ON_THE_WAY = 1.0
 """Expected gain in log-likelihood, as a part of the overdispersion, at which a fit ends beside which further terms are tried:
 each has to gain many times it."""
@@ -89,7 +92,7 @@ def is_likelier(search: ModelSearch, other: ModelSearch) -> bool:
 
 
 def begin_no_later(search: ModelSearch, decays: Sequence[FreeDecay]) -> ModelSearch:
-    """Let decays begin no later than other decays of the same drops do, and fit the model to them.
+    """Let decays begin not much later than other decays of the same drops do, and fit the model to them.
 
     Parameters
     ----------
@@ -97,7 +100,8 @@ def begin_no_later(search: ModelSearch, decays: Sequence[FreeDecay]) -> ModelSea
         The present model and its fit.
     decays
         As the accelerometers show them: all tyres are on the ground. To a model that lacks something they may seem to hop for
-        longer, and what it lacks shows best in the samples that it gave up.
+        longer, and what it lacks shows best in the samples that it gave up, but for those in which the filter of a logger may
+        still ring.
 
     Returns
     -------
@@ -105,7 +109,7 @@ def begin_no_later(search: ModelSearch, decays: Sequence[FreeDecay]) -> ModelSea
         As given where none begins later.
     """
     latest = {decay.file: decay.start for decay in decays}
-    starts = [min(decay.start, latest.get(decay.file, decay.start)) for decay in search.decays]
+    starts = [min(decay.start, latest.get(decay.file, decay.start) + _RINGS) for decay in search.decays]
     return _begun_at(search, starts)
 
 

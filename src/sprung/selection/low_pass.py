@@ -114,8 +114,12 @@ def _likeliest(search: ModelSearch, first: float, ratio: float) -> tuple[ModelSe
         gains[between] = fits[between].gain_over(without)
     best = max(gains, key=lambda corner: gains[corner])
     # What records may show behind it is free, as nothing tells what it remembers: without it a fit has to be as free.
-    free = _refit_behind(without, LowPass(best, _ORDER, passes_all=True), beginning_only=True)
-    if not fits[best].gain_over(free) > search.required_of_switch:
+    fits[best], free = (
+        _refit_behind(near, LowPass(best, _ORDER, passes_all), beginning_only=True)
+        for near, passes_all in ((fits[best], False), (without, True))
+    )
+    # Where more is missing, the freedom explains some of that: it is enough to explain more, until all else is found.
+    if not fits[best].gain_over(free) > (0.0 if search.is_overdispersed else search.required_of_switch):
         return None
     corner = _vertex(gains)
     return _nearest(fits, corner, search), corner

@@ -356,20 +356,27 @@ class ModelSearch:
         return [name for name, at in places.items() if not (seen[at] and variance[at] < 1)]
 
     def leaves_misfit(self, fit: FitResult, part: float) -> bool:
-        """Whether another fit, of the decays or their beginnings, leaves more than a part of this one's model error there.
+        """Whether another fit, of the decays or their beginnings, leaves more than a part of this one's model error there."""
+        before, after = self._model_errors(fit)
+        much = before > self._sensor_noise
+        # Of a motion without bounds the part is no number.
+        weights = 1 / self._sensor_noise[much]
+        return bool(much.any()) and not float(after[much] @ weights) <= part * float(before[much] @ weights)
 
-        Where this one leaves nothing but noise, it is whether the other one leaves more.
-        """
+    def is_better_than(self, fit: FitResult) -> bool:
+        """Whether another fit, of the decays or their beginnings, leaves more in some channel there, by more than the noise."""
+        before, after = self._model_errors(fit)
+        return bool(np.any(~(after <= before + self._sensor_noise)[self._sensor_noise > 0]))
+
+    def _model_errors(self, fit: FitResult) -> tuple[Real, Real]:
+        """Return the variances beyond noise that this fit and another one leave where both fitted, (m/s²)², (channel,) each."""
         lengths = [residual.shape[1] for residual in fit.residuals]
         own = [residual[:, :length] for residual, length in zip(self.fit.residuals, lengths, strict=True)]
         before, after = (
             np.maximum(_mean_squares(np.concatenate(residuals, axis=1)) - self._sensor_noise, 0.0)
             for residuals in (own, fit.residuals)
         )
-        much = ~(np.maximum(before, after) <= self._sensor_noise)
-        # Of a motion without bounds the part is no number.
-        weights = 1 / self._sensor_noise[much]
-        return bool(much.any()) and not float(after[much] @ weights) <= part * float(before[much] @ weights)
+        return before, after
 
     @property
     def reason(self) -> str:

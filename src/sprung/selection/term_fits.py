@@ -186,6 +186,8 @@ def fit_nonlinear_term(search: ModelSearch, larger: ModelStructure, first: FitRe
     if not first.converged:
         enough = _enough_to_compare(search)
         first = fit_structure(larger, search.decays, first, enough, search.progress, beginning_only=True)
+    if search.is_better_than(first):
+        return None
     if not search.structure.is_nonlinear and search.leaves_misfit(first, MISFIT_LEFT):
         larger, first = _refined(search, larger, first)
         if search.leaves_misfit(first, MISFIT_LEFT):
