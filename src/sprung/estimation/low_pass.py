@@ -108,8 +108,9 @@ class SampledLowPass(NamedTuple):
     @property
     def remaining_delay(self) -> float:
         """What is left of its delay of slow motions, s: half a sample at the most."""
-        has_none = self.low_pass is None or self.low_pass.passes_all
-        return 0.0 if has_none or self.low_pass is None else self.low_pass.delay - self.lag / self.rate
+        if self.low_pass is None or self.low_pass.passes_all:
+            return 0.0
+        return self.low_pass.delay - self.lag / self.rate
 
     def at(self, finer: int) -> SampledLowPass:
         """Return the low-pass of signals that are sampled faster, with the same delay.
