@@ -229,7 +229,7 @@ def test_the_samples_that_a_poorer_model_gives_up_show_what_it_lacks(monkeypatch
 
 @pytest.mark.long
 def test_laws_of_the_same_springs_are_compared(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Springs that are progressive, with bump stops, were taken for air springs: at up to 5.6 standard errors."""
+    """Air springs were taken for progressive ones with bump stops: at up to 5.6 standard errors."""
     monkeypatch.setattr(real_campaigns, "RATE", 1000.0)
     monkeypatch.setattr(real_campaigns, "NOISE", 0.07)
     test = draw_test("air", 3)

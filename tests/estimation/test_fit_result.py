@@ -145,7 +145,7 @@ def test_one_drop_of_a_stepped_fit_is_that_drop(stepped: FitResult) -> None:
     errors = (alone.gradient - at.by_drop[0][2]) / np.sqrt(np.diagonal(alone.information))
     assert np.abs(errors).max() < 1e-3
     # The fit followed segments of the motions until they met to 1e-6.
-    np.testing.assert_allclose(whole.residual_sums, stepped.residual_sums, rtol=1e-6)
+    np.testing.assert_allclose(whole.residual_sums, stepped.residual_sums, rtol=1e-7)
 
 
 @pytest.mark.slow
@@ -186,7 +186,7 @@ def test_a_drop_that_is_worse_than_all_others_is_looked_for_from_elsewhere(stepp
 def test_possible_memories_are_left_as_they_are(stepped: FitResult) -> None:
     objective = stepped.problem.objective
     assert isinstance(objective, TimeSteppingObjective)
-    ended = Maximum(stepped.iterate, 3, True)
+    ended = Maximum(stepped.iterate, 3, stepped.converged)
     assert go_on_with_likelier_states(stepped.problem, objective, ended, 0.1, 2) is ended
 
 

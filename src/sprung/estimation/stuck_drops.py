@@ -66,7 +66,7 @@ def go_on_with_likelier_states(
     Only the drops concerned are followed anew, with the parameters held: those that are likelier so are kept.
     """
     for _ in range(_ROUNDS):
-        states = _likelier_states(objective, found.point, tolerance * problem.overdispersion)
+        states = _likelier_states(objective, found, tolerance * problem.overdispersion)
         if states is None:
             break
         again = replace(problem, objective=objective.with_states(states)).maximise(
@@ -78,14 +78,14 @@ def go_on_with_likelier_states(
     return found
 
 
-def _likelier_states(objective: TimeSteppingObjective, point: Iterate, least: float) -> Real | None:
+def _likelier_states(objective: TimeSteppingObjective, found: Maximum[Iterate], least: float) -> Real | None:
     """Return initial states of all drops, with others of stuck ones that gain by them; None where none gains enough."""
-    at = point.at
+    at = found.point.at
     possible = objective.with_possible_memories(at.states)
     starts = [(drop, possible[drop]) for drop in np.flatnonzero((possible != at.states).any(axis=1)).tolist()]
-    starts += [
-        (drop, start) for drop in _stuck_drops(objective, at) for start in _scattered(objective, at.states, drop)
-    ]
+    # Where a fit was stopped on the way, a drop that is worse than others may only need more steps.
+    stuck = _stuck_drops(objective, at) if found.converged else []
+    starts += [(drop, start) for drop in stuck for start in _scattered(objective, at.states, drop)]
     if not starts:
         return None
     drops, states = zip(*starts, strict=True)
