@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.analysis.analysis import Analysis
+from sprung.analysis.first_term import explaining_term
 from sprung.analysis.settling import settle_corrections
 from sprung.estimation import CONVERGED, NEAR, FitResult, fit_linear
-from sprung.faults import is_explained
+from sprung.faults import consistency_of, is_explained
 from sprung.preprocess import FreeDecay
 from sprung.progress import Progress
 from sprung.selection import (
@@ -74,13 +75,17 @@ def _fit_corrected(run: Analysis, structure: ModelStructure, progress: Progress)
     for term in larger.selected:
         smaller = smaller if term in needed else replace(smaller, structure=smaller.without(term))
     found = run
-    # Where a tyre seems to be on the ground too early, the decays begin where the correction explained them.
+    # Where a tyre seems to be on the ground too early, the decays begin where the correction explained them; but where a term
+    # explains what is left, it shows in the samples before.
     for decays in (run.prepared.decays, _begun_as(candidate.decays, run.prepared.decays)):
         fit = fit_structure(smaller.structure, decays, candidate.fit, NEAR, progress, most=1)
         near = from_contact(ModelSearch(smaller.structure, fit, decays, (), progress), most=1)
         search = near.recorded(needed, fitted=True, taken=True)
-        found = converged(settle_corrections(replace(run, search=search, fits=found.fits)), progress)
-        if is_explained(found.decays, found.fit):
+        found = replace(run, search=search, fits=found.fits)
+        # What a model leaves that lacks something says nothing of the numbers of a correction.
+        found = converged(settle_corrections(found) if is_explained(near.decays, near.fit) else found, progress)
+        consistency = consistency_of(found.campaign, found.decays, found.fit)
+        if consistency != "misfit" or explaining_term(found, consistency) is not None:
             break
     return found
 

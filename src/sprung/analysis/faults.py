@@ -69,7 +69,7 @@ def _consistency(run: Analysis) -> Consistency | None:
 
 def _explains(hypotheses: Sequence[Hypothesis]) -> bool:
     """Whether hypotheses that were isolated one after the other explain the recordings wholly."""
-    return bool(hypotheses) and (hypotheses[-1].candidate.is_explained or hypotheses[-1].is_sufficient)
+    return bool(hypotheses) and hypotheses[-1].is_sufficient
 
 
 def _is_evident(hypotheses: Sequence[Hypothesis]) -> bool:

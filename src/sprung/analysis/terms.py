@@ -89,9 +89,9 @@ def select_nonlinear_terms(run: Analysis, progress: Progress) -> Analysis:
         )
         early = begin_no_later(before, run.prepared.decays)
         search = select_nonlinear(early, plain)
-        if early is not before and (search.has_model_error or not search.structure.is_nonlinear):
+        if early is not before and (search.has_model_error or search.structure.names == found.names):
             search = select_nonlinear(replace(before, steps=search.steps), plain)
-    if search.structure.is_nonlinear:
+    if search.structure.names != before.structure.names:
         # The search compares fits to beginnings, or to a standard error: at the optimum a term may turn out to be nothing.
         last = from_contact(search)
         needed, _ = leave_out_unneeded(last, run.model)

@@ -137,7 +137,8 @@ class SteppedMotion:
 
         Shape (drop, channel, unknown + 1, unknown + 1); what a record may show whatever the motion is subtracted.
         """
-        products: Real = self.linearised[0].sum(axis=0)
+        with np.errstate(invalid="ignore"):
+            products: Real = self.linearised[0].sum(axis=0)
         return products
 
     @cached_property

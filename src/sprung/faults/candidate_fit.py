@@ -159,16 +159,17 @@ class CandidateFit:
         """
         return self._corrected(correction, start, _STEPS)
 
-    def delete(self, correction: Correction) -> CandidateFit:
-        """Estimate the fit without a channel or drop, by a few Gauss-Newton steps.
+    def estimate(self, correction: Correction) -> CandidateFit:
+        """Estimate the fit of the corrected campaign, by a few Gauss-Newton steps.
 
-        Where the campaign is described but for a small fault, one step from its fit tells what the deletion gains. Where it is
-        not, the fit may be far away: then the better one of a few steps and of the direct estimate counts.
+        Where the campaign is described but for a small fault, one step from its fit tells what a correction gains. Where it is
+        not, the fit may be far away: then the better one of a few steps and of the direct estimate counts. That one knows no
+        further terms of a model.
 
         Parameters
         ----------
         correction
-            Leaves the channel or drop out.
+            Leaves a channel or drop out, or exchanges two.
         """
         if self.is_explained:
             return self.step(correction, self.fit)

@@ -49,7 +49,8 @@ class Hypothesis:
     is_beyond_prior
         Whether its numbers lie beyond what the campaign states of a sensor with an uncertainty.
     is_sufficient
-        Whether what it leaves is at its own place, and perhaps gone once the corrected recordings are preprocessed again.
+        Whether it explains the recordings wholly, with those accepted before it: it leaves noise, or something at its own place
+        that is perhaps gone once the corrected recordings are preprocessed again.
     required
         Gain in twice the log-likelihood that it needs by the error budget.
     """

@@ -31,8 +31,8 @@ everything."""
 _MOST_PARTS, _MOST_FITS, _MOST_STATEMENTS, _MOST_FAULTS = 3, 3, 2, 3
 """Parts that are left out by a fit, fits of hypotheses and of statements for each fault, and faults of a campaign."""
 
-_STATEMENT = 0.1
-"""Share of a misfit that a wrong statement may leave: it explains the recordings wholly or is none."""
+_WHOLLY = 0.1
+"""Share of a misfit that may be left where the recordings are explained wholly, as a wrong statement does or is none."""
 
 
 def isolate(base: CandidateFit, progress: Progress = silent) -> tuple[tuple[Hypothesis, ...], int]:
@@ -48,8 +48,8 @@ def isolate(base: CandidateFit, progress: Progress = silent) -> tuple[tuple[Hypo
     Returns
     -------
     hypotheses
-        One after the other; empty where nothing explains the recordings. They explain them wholly where the residuals of the
-        last one's fit are noise alone.
+        One after the other; empty where nothing explains the recordings. They explain them wholly where the last one is
+        sufficient.
     fits
         How many fits were made.
     """
@@ -64,7 +64,7 @@ def isolate(base: CandidateFit, progress: Progress = silent) -> tuple[tuple[Hypo
         if not best.is_specific and best.candidate.is_explained and any(one.overlaps(best) for one in accepted):
             # What is left at the place of a correction may be gone once the recordings are corrected and preprocessed again.
             return (*accepted[:-1], replace(accepted[-1], is_sufficient=True)), fits
-        accepted.append(best)
+        accepted.append(replace(best, is_sufficient=_explains(first, best)))
         if best.candidate.is_explained or best.candidate.misfit < SHARE * first.misfit:
             sufficient = len(accepted)
         if best.candidate.is_explained or best.remedy == "named":
@@ -76,6 +76,16 @@ def isolate(base: CandidateFit, progress: Progress = silent) -> tuple[tuple[Hypo
         if fault is not None:
             return (Hypothesis(fault, "named", Correction(), first.table, first),), fits
     return hypotheses, fits
+
+
+def _explains(first: CandidateFit, best: Hypothesis) -> bool:
+    """Whether a hypothesis, with those before it, explains the recordings wholly.
+
+    What is left of a small misfit may be within the limits of noise, and yet be a good part of it: a vehicle that has what the
+    model has not is explained so far by many faults.
+    """
+    left = best.candidate
+    return left.is_explained and (first.is_explained or left.misfit <= _WHOLLY * first.misfit)
 
 
 def most_likely(base: CandidateFit, progress: Progress = silent) -> tuple[Hypothesis | None, int]:
@@ -156,7 +166,7 @@ def _wrong_statement(base: CandidateFit) -> tuple[Hypothesis | None, int]:
     for hypothesis in promising[:_MOST_STATEMENTS]:
         other, _ = hypothesis.confirm(base)
         gain = 0.0 if other is None else base.table.cost - other.table.cost
-        if other is None or other.candidate.misfit > _STATEMENT * base.misfit:
+        if other is None or other.candidate.misfit > _WHOLLY * base.misfit:
             continue
         if gain > SIGNIFICANT * other.candidate.fit.overdispersion:
             confirmed.append(other)
@@ -201,9 +211,9 @@ def _deletions(base: CandidateFit, progress: Progress) -> list[ChannelDeletion |
     channels, drops = (np.flatnonzero(table.counts.any(axis=axis)).tolist() for axis in (0, 1))
     deletions: list[ChannelDeletion | DropDeletion] = []
     for channel in channels if len(channels) > 1 else ():
-        deletions.append(ChannelDeletion(base, channel, base.delete(mask_channel(channel))))
+        deletions.append(ChannelDeletion(base, channel, base.estimate(mask_channel(channel))))
     for drop in drops if len(drops) > 1 else ():
-        candidate = base.delete(exclude_drops(base.recordings[drop]))
+        candidate = base.estimate(exclude_drops(base.recordings[drop]))
         deletions.append(DropDeletion(base, drop, candidate, DROP_HYPOTHESES))
     return sorted(deletions, key=lambda deletion: deletion.limit.cost)
 
@@ -286,7 +296,7 @@ def _likeliest_alike(base: CandidateFit, confirmed: Hypothesis, alike: Sequence[
     found = [confirmed, *_near(base, rivals, confirmed.candidate.fit)]
     # Much of what tells laws apart is fast, and fades soon after the landing.
     whole = [] if base.whole is None else _near(base.whole, found, confirmed.candidate.fit)
-    judged = whole if len(whole) == len(found) and any(one.candidate.is_explained for one in whole) else found
+    judged = whole if len(whole) == len(found) else found
     scores = [one.score() - one.remaining_gain for one in judged]
     likeliest = int(np.argmin(scores))
     limit = scores[likeliest] + SIGNIFICANT * judged[likeliest].candidate.fit.overdispersion

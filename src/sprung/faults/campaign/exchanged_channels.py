@@ -14,7 +14,7 @@ from sprung.faults.hypothesis import Hypothesis
 
 
 def exchanged_channels(base: CandidateFit) -> Iterator[Hypothesis]:
-    """Exchange each two channels; the residuals follow from the direct estimate and one step."""
+    """Exchange each two channels; the residuals follow from a few steps."""
     sensors = base.campaign.sensors
     used = np.flatnonzero(base.table.counts.any(axis=0)).tolist()
     for first, second in combinations(used, 2):
@@ -24,5 +24,5 @@ def exchanged_channels(base: CandidateFit) -> Iterator[Hypothesis]:
         what = "the two channels are exchanged, as the fit of all channels shows; corrected"
         fault = Fault("exchanged", names, what, "Exchange the two in the campaign file, or their cables.")
         correction = exchange_channels(first, second, sensors)
-        candidate = base.step(correction)
+        candidate = base.estimate(correction)
         yield Hypothesis(fault, "corrected", correction, candidate.table, candidate)
