@@ -35,6 +35,15 @@ def with_fault(campaign: sprung.Campaign, change: Callable[[list[str], Real], No
     return campaign.with_recordings(recordings)
 
 
+def assert_right(result: sprung.Result, truth: Truth) -> None:
+    """Assert that every true parameter is within its error."""
+    for name, true in truth.parameters.items():
+        found = result.parameters[name]
+        assert found.value is not None
+        assert found.std is not None
+        assert abs(found.value - true) < FARTHEST * found.std, name
+
+
 def late(channels: list[str], values: Real) -> None:
     own = values[channels.index("body_rl")]
     own[5:] = own[:-5].copy()
@@ -66,11 +75,7 @@ def test_a_fault_is_mended_and_the_mounts_of_the_dampers_are_found(
     assert [(one.code, one.where) for one in result.faults] == [fault]
     assert tuple(result.fit.model) == ("damper-mount",)
     assert result.verdict.state == "accept"
-    for name, true in truth.parameters.items():
-        found = result.parameters[name]
-        assert found.value is not None
-        assert found.std is not None
-        assert abs(found.value - true) < FARTHEST * found.std, name
+    assert_right(result, truth)
 
 
 @pytest.mark.slow
@@ -80,3 +85,16 @@ def test_air_springs_are_no_faults_of_half_the_drops() -> None:
     assert not result.faults
     assert tuple(result.fit.model) == ("air",)
     assert result.verdict.state == "accept"
+
+
+@pytest.mark.slow
+def test_a_sensor_that_a_nonlinear_fit_takes_far_from_what_is_stated_is_named() -> None:
+    def reads_less(channels: list[str], values: Real) -> None:
+        values[channels.index("wheel_fr")] *= 0.8
+
+    campaign, truth = recorded("tyre", 0)
+    result = sprung.identify(with_fault(campaign, reads_less))
+    assert ("unlike-others", "wheel_fr") in [(one.code, one.where) for one in result.faults]
+    assert result.verdict.state == "doubtful"
+    assert set(result.fit.model) == {"tyre-damping", "tyre-curve"}
+    assert_right(result, truth)

@@ -39,7 +39,7 @@ from sprung.faults import CONTRADICTING, detect_drift
 from sprung.preprocess import FreeDecay
 from sprung.progress import Progress, Step
 from sprung.results import FitReport, Result, SensorEstimate, Series, TestedVehicle, setup_of, withhold_estimates
-from sprung.selection import SEPARATE_TRACKS, TERMS, ModelStructure, SelectionStep, describe_terms
+from sprung.selection import SEPARATE_TRACKS, TERMS, ModelStructure, SelectionStep, begin_no_later, describe_terms
 from sprung.vehicle import (
     EMPTY,
     LOAD_MASS,
@@ -69,7 +69,7 @@ def assess(run: Analysis, progress: Progress) -> Analysis:
     motions = body_motions(optimum, decays, fitted, campaign.sensors)
     validated = cross_validate_drops(optimum, fit, decays, channels, motions)
     contradicting = sum(any(fault.code in CONTRADICTING for fault in faults) for _, faults in run.prepared.left_out)
-    reasons = [fault.what for fault in suspected]
+    reasons = [*(fault.what for fault in suspected), *_unexplained_beginning(run)]
     verdict = decide_verdict(fit, misfit, estimates, channels, reasons, validated, contradicting)
     rejected = verdict.state == "reject"
     profiles = {} if rejected else profiles_of(run.options.profile, optimum, statistics, structure.known, progress)
@@ -108,6 +108,22 @@ def assess(run: Analysis, progress: Progress) -> Analysis:
     )
     run = run.noted("assess", verdict.state, "; ".join(verdict.reasons))
     return replace(run, result=withhold_estimates(replace(result, trace=run.trace)))
+
+
+def _unexplained_beginning(run: Analysis) -> tuple[str, ...]:
+    """Return why a correction is doubted that explains less of the decays than the accelerometers show to be free.
+
+    What a model lacks is largest there: without these samples it may look like a fault, or be missed.
+    """
+    if not run.corrected:
+        return ()
+    early = begin_no_later(run.model, run.prepared.decays)
+    if early is run.model or not early.has_model_error:
+        return ()
+    lost = max(decay.start - before.start for decay, before in zip(run.decays, early.decays, strict=True))
+    corrected = ", ".join(dict.fromkeys(one.fault.where for one in run.corrected))
+    what = f"does not explain up to {lost:.2f} s in which all tyres are on the ground"
+    return (f"with the correction of {corrected}, the model {what}: it lacks something, or something else is wrong",)
 
 
 def _sensor_estimates(fit: FitStatistics, sensors: Sequence[Sensor]) -> tuple[SensorEstimate, ...]:

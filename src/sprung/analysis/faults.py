@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from sprung.analysis.analysis import MOST_RESTARTS, Analysis
 from sprung.analysis.baseline import converged
 from sprung.analysis.first_term import explaining_term
-from sprung.analysis.on_pads import suspect_sensor
 from sprung.analysis.settling import settle_corrections
 from sprung.analysis.terms import select_finite_rotation
 from sprung.campaign import Campaign
+from sprung.errors import Fault
 from sprung.estimation import NEAR, FitResult
 from sprung.faults import (
     CandidateFit,
@@ -30,6 +30,20 @@ from sprung.selection import (
     fit_structure,
     needed_terms,
 )
+from sprung.vehicle import SensorQuantity, sensor_unknown
+
+_FAR = 5.0
+"""Standard uncertainties from which a sensor is not what is stated of it."""
+
+_IN_WORDS: Mapping[SensorQuantity, str] = {
+    "gain": "gain",
+    "x": "place",
+    "y": "place",
+    "tilt_x": "tilt",
+    "tilt_y": "tilt",
+    "delay": "delay",
+}
+"""Unknowns of a sensor in words."""
 
 
 def isolate_evident_faults(run: Analysis, progress: Progress) -> Analysis:
@@ -52,12 +66,36 @@ def isolate_faults(run: Analysis, progress: Progress) -> Analysis:
     """Correct what explains much of what no model term explains; what is ambiguous is only named."""
     run = _with_isolated(run, _consistency(run), progress)
     found = run.found
-    named = tuple(one.fault for one in found if one.remedy == "named") or (() if found else suspect_sensor(run))
+    named = tuple(one.fault for one in found if one.remedy == "named") or (
+        () if found else _suspected_sensor(run.model)
+    )
     run = replace(run, suspected=tuple(dict.fromkeys((*run.suspected, *named))))
     for fault in named:
         run = run.noted("isolate_faults", f"suspected {fault.code} of {fault.where}", fault.what)
     corrected = [one for one in found if one.remedy != "named"]
     return _corrected(run, corrected, "isolate_faults") if corrected else run
+
+
+def _suspected_sensor(search: ModelSearch) -> tuple[Fault, ...]:
+    """Return the sensor that a fit takes furthest from what is stated of it, as a fault, if it is far.
+
+    Where a model is followed step by step or in the frequency domain, which of several sensors is at fault is not isolated,
+    and what is stated is not corrected.
+    """
+    found = search.fit.parameters
+    far = [
+        ((found[name] - stated.value) / stated.std, sensor.channel, what)
+        for sensor in search.structure.sensors
+        for quantity, what in _IN_WORDS.items()
+        if (name := sensor_unknown(quantity, sensor.channel)) in found
+        and (stated := sensor.uncertainties.get(name)) is not None
+    ]
+    ratio, channel, what = max(far, key=lambda one: abs(one[0]), default=(0.0, "", ""))
+    if abs(ratio) < _FAR:
+        return ()
+    text = f"the fit takes its {what} {abs(ratio):.0f} times as far from what is stated as its standard uncertainty"
+    do = "Check this sensor and those near it; correct what is stated of it."
+    return (Fault("unlike-others", channel, f"{text}; nothing was changed", do),)
 
 
 def _consistency(run: Analysis) -> Consistency | None:

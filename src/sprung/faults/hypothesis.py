@@ -50,7 +50,9 @@ class Hypothesis:
         Whether its numbers lie beyond what the campaign states of a sensor with an uncertainty.
     is_sufficient
         Whether it explains the recordings wholly, with those accepted before it: it leaves noise, or something at its own place
-        that is perhaps gone once the corrected recordings are preprocessed again.
+        that is perhaps gone once the corrected recordings are preprocessed again; or is gross.
+    is_gross
+        Whether nothing that a vehicle may have passes for it: it is evident although the model leaves a part of the misfit.
     required
         Gain in twice the log-likelihood that it needs by the error budget.
     """
@@ -67,6 +69,7 @@ class Hypothesis:
     score_gain: float = 0.0
     is_beyond_prior: bool = False
     is_sufficient: bool = False
+    is_gross: bool = False
     required: float = SIGNIFICANT
 
     @property

@@ -65,7 +65,7 @@ def isolate(base: CandidateFit, progress: Progress = silent) -> tuple[tuple[Hypo
             # What is left at the place of a correction may be gone once the recordings are corrected and preprocessed again.
             return (*accepted[:-1], replace(accepted[-1], is_sufficient=True)), fits
         accepted.append(replace(best, is_sufficient=_explains(first, best)))
-        if best.candidate.is_explained or best.candidate.misfit < SHARE * first.misfit:
+        if best.is_gross or best.candidate.is_explained or best.candidate.misfit < SHARE * first.misfit:
             sufficient = len(accepted)
         if best.candidate.is_explained or best.remedy == "named":
             break
@@ -79,13 +79,13 @@ def isolate(base: CandidateFit, progress: Progress = silent) -> tuple[tuple[Hypo
 
 
 def _explains(first: CandidateFit, best: Hypothesis) -> bool:
-    """Whether a hypothesis, with those before it, explains the recordings wholly.
+    """Whether a hypothesis, with those before it, explains the recordings wholly, or is gross.
 
     What is left of a small misfit may be within the limits of noise, and yet be a good part of it: a vehicle that has what the
     model has not is explained so far by many faults.
     """
     left = best.candidate
-    return left.is_explained and (first.is_explained or left.misfit <= _WHOLLY * first.misfit)
+    return best.is_gross or (left.is_explained and (first.is_explained or left.misfit <= _WHOLLY * first.misfit))
 
 
 def most_likely(base: CandidateFit, progress: Progress = silent) -> tuple[Hypothesis | None, int]:

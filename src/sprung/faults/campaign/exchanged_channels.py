@@ -25,4 +25,4 @@ def exchanged_channels(base: CandidateFit) -> Iterator[Hypothesis]:
         fault = Fault("exchanged", names, what, "Exchange the two in the campaign file, or their cables.")
         correction = exchange_channels(first, second, sensors)
         candidate = base.estimate(correction)
-        yield Hypothesis(fault, "corrected", correction, candidate.table, candidate)
+        yield Hypothesis(fault, "corrected", correction, candidate.table, candidate, is_gross=True)
