@@ -101,15 +101,15 @@ def begin_no_later(search: ModelSearch, decays: Sequence[FreeDecay]) -> ModelSea
     decays
         As the accelerometers show them: all tyres are on the ground. To a model that lacks something they may seem to hop for
         longer, and what it lacks shows best in the samples that it gave up, but for those in which the filter of a logger may
-        still ring.
+        still ring. After a push or a bump only the fitted vehicle shows from when on it moves freely.
 
     Returns
     -------
     ModelSearch
         As given where none begins later.
     """
-    latest = {decay.file: decay.start for decay in decays}
-    starts = [min(decay.start, latest.get(decay.file, decay.start) + _RINGS) for decay in search.decays]
+    latest = {decay.file: decay.start + _RINGS for decay in decays if not decay.is_driven}
+    starts = [min(decay.start, latest.get(decay.file, decay.start)) for decay in search.decays]
     return _begun_at(search, starts)
 
 
