@@ -80,8 +80,10 @@ def _suspected_sensor(search: ModelSearch) -> tuple[Fault, ...]:
     """Return the sensor that a fit takes furthest from what is stated of it, as a fault, if it is far.
 
     Where a model is followed step by step or in the frequency domain, which of several sensors is at fault is not isolated,
-    and what is stated is not corrected.
+    and what is stated is not corrected. A model that leaves much takes healthy sensors anywhere.
     """
+    if search.has_model_error:
+        return ()
     found = search.fit.parameters
     far = [
         ((found[name] - stated.value) / stated.std, sensor.channel, what)
