@@ -12,7 +12,7 @@ from sprung.analysis.analysis import Analysis
 from sprung.analysis.first_term import explaining_term
 from sprung.analysis.settling import settle_corrections
 from sprung.estimation import CONVERGED, NEAR, FitResult, fit_linear
-from sprung.faults import consistency_of, is_explained
+from sprung.faults import is_explained
 from sprung.preprocess import FreeDecay
 from sprung.progress import Progress
 from sprung.selection import (
@@ -84,8 +84,7 @@ def _fit_corrected(run: Analysis, structure: ModelStructure, progress: Progress)
         found = replace(run, search=search, fits=found.fits)
         # What a model leaves that lacks something says nothing of the numbers of a correction.
         found = converged(settle_corrections(found) if is_explained(near.decays, near.fit) else found, progress)
-        consistency = consistency_of(found.campaign, found.decays, found.fit)
-        if consistency != "misfit" or explaining_term(found, consistency) is not None:
+        if is_explained(found.decays, found.fit) or explaining_term(found, "misfit") is not None:
             break
     return found
 
