@@ -132,7 +132,7 @@ def test_friction_that_shows_in_no_score_is_tried_once_nothing_else_is_needed(mo
     first = fit_linear(decays, plain.linear_models, campaign.sensors, plain.known, start=TABLE_1_CAR.parameters)
     search = ModelSearch(curved, fit_structure(curved, decays, first, 1.0, silent), decays)
     monkeypatch.setattr(stepwise, "score_terms", lambda search, terms: (search, dict.fromkeys(terms, (0.0, 0.0))))
-    found = stepwise.select_further_terms(search)
+    found = stepwise.select_terms_beside(search)
     assert "friction" in found.structure.terms
     assert abs(found.fit.parameters["F_r"] / car.parameters["F_r"] - 1) < 0.05
 

@@ -10,7 +10,6 @@ from __future__ import annotations
 from dataclasses import replace
 
 from sprung.progress import Step
-from sprung.selection.contact import from_contact
 from sprung.selection.error_budget import MISFIT_LEFT
 from sprung.selection.linear_terms import BENDING, TWIST
 from sprung.selection.ordinary_vehicle import (
@@ -20,7 +19,7 @@ from sprung.selection.ordinary_vehicle import (
 )
 from sprung.selection.search import ModelSearch
 from sprung.selection.starts import start_variants
-from sprung.selection.stepwise import select_further_terms
+from sprung.selection.stepwise import select_terms_beside
 from sprung.selection.structure import ModelStructure
 from sprung.selection.terms import TERMS
 
@@ -86,7 +85,7 @@ def select_from_ordinary_vehicle(search: ModelSearch, plain: ModelStructure) -> 
         against = "together they do not explain what the model so far leaves"
         return search.recorded(dict.fromkeys(terms, 0.0), True, False, against)
     found = _without_unneeded(found)
-    return select_further_terms(from_contact(found, on_the_way=True))
+    return select_terms_beside(found)
 
 
 def _without_unneeded(search: ModelSearch) -> ModelSearch:

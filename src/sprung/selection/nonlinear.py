@@ -10,12 +10,12 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 from sprung.progress import Step
-from sprung.selection.contact import from_contact, is_likelier
+from sprung.selection.contact import is_likelier
 from sprung.selection.from_ordinary_vehicle import select_from_ordinary_vehicle
 from sprung.selection.linear_terms import ENGINE
 from sprung.selection.scoring import score_terms
 from sprung.selection.search import ModelSearch
-from sprung.selection.stepwise import rank_terms, select_further_terms, try_likeliest
+from sprung.selection.stepwise import rank_terms, select_terms_beside, try_likeliest
 from sprung.selection.structure import ModelStructure
 from sprung.selection.term_fits import fit_term, select_gravity_leakage
 from sprung.selection.terms import TERMS
@@ -92,4 +92,4 @@ def _from_base(base: ModelSearch, terms: Sequence[str]) -> ModelSearch:
     found = try_likeliest(base, terms)
     if found.structure.names == base.structure.names:
         return found
-    return select_further_terms(from_contact(found, on_the_way=True))
+    return select_terms_beside(found)

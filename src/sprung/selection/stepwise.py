@@ -10,6 +10,8 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from sprung.estimation import FitResult
 from sprung.selection.backward_elimination import counterpart_of, leave_out_unneeded
 from sprung.selection.contact import from_contact
@@ -17,6 +19,7 @@ from sprung.selection.error_budget import MISFIT_LEFT_BY_ALL
 from sprung.selection.low_pass import confirm_low_pass, select_low_pass
 from sprung.selection.scoring import WORTH_A_FIT, Scores, score_terms
 from sprung.selection.search import ModelSearch
+from sprung.selection.starts import thinned
 from sprung.selection.term_fits import (
     begin_nonlinear_fit,
     fit_linear_term,
@@ -38,6 +41,9 @@ _EXPLAINED = 0.7
 
 _RIVALS, _RIVAL_SCORE = 2, 0.5
 """How many terms are fitted beside one that leaves a misfit, and their scores at the least, as a part of its score."""
+
+_BEGINNING = 1.0
+"""s of the decays in which terms are looked for first beside nonlinear ones."""
 
 _FURTHER_ROUNDS, _TRIED_BESIDE = 8, 2
 """How many times terms are looked for beside nonlinear ones, and how many are fitted each time until one is accepted."""
@@ -75,17 +81,40 @@ def select_linear_terms(
     return search
 
 
-def select_further_terms(search: ModelSearch) -> ModelSearch:
+def select_terms_beside(search: ModelSearch) -> ModelSearch:
     """Return the search after terms of any kind, and a low-pass of the loggers, have been tried beside its nonlinear ones.
+
+    Where much is missing, every fit is slow. What the beginnings of the decays show is found there first; the whole decays
+    then have little more to show.
+
+    Parameters
+    ----------
+    search
+        The present model and its fit, of the decays or of their beginnings.
+
+    Returns
+    -------
+    ModelSearch
+    """
+    beginnings, _ = thinned(search.decays, np.inf, _BEGINNING)
+    early = from_contact(replace(search, decays=beginnings), on_the_way=True)
+    early = _select_further_terms(early, whole=False)
+    whole = [
+        decay.shifted(round((beginning.start - decay.start) * decay.rate))
+        for decay, beginning in zip(search.decays, early.decays, strict=True)
+    ]
+    return _select_further_terms(from_contact(replace(early, decays=whole), on_the_way=True), whole=True)
+
+
+def _select_further_terms(search: ModelSearch, whole: bool) -> ModelSearch:
+    """Try terms and a low-pass round after round, until none is accepted.
 
     Parameters
     ----------
     search
         The present model and its fit.
-
-    Returns
-    -------
-    ModelSearch
+    whole
+        Whether the beginnings of the decays have decided already: where they leave no misfit, only scores are looked at.
     """
     tried: frozenset[str] = frozenset()
     for _ in range(_FURTHER_ROUNDS):
@@ -94,6 +123,8 @@ def select_further_terms(search: ModelSearch) -> ModelSearch:
         before = search
         search, fitted = _try_scored(search, tried)
         tried |= {*fitted}
+        if search.structure is before.structure and whole and not search.is_overdispersed:
+            break
         if search.structure is before.structure:
             untried = _untried(search, tried)
             search = _accept_low_pass(search, _rivals(untried), _hidden(untried))

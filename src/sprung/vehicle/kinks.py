@@ -143,6 +143,13 @@ class KinkForces:
         is_rounded: NDArray[np.bool_] = self.kinks.width > 0
         return is_rounded
 
+    @cached_property
+    def _rounded(self) -> tuple[Index, Array, Array, Array]:
+        """Of the kinks that are rounded: positions, widths, arguments from which they act, and what is subtracted."""
+        at = np.flatnonzero(self._is_rounded)
+        position, width = self.kinks.position[at], self.kinks.width[at]
+        return at, width, -position, np.hypot(position, width) - position
+
     def arguments(self, inputs: Array) -> Array:
         """Return how far each kink's argument is above its position, from travels and rates of all rows, (..., 2 row)."""
         above: Array = inputs @ self._of_inputs - self.kinks.position
@@ -151,11 +158,13 @@ class KinkForces:
     def act(self, arguments: Array) -> tuple[Array, Array]:
         """Return forces, and their slopes by travels and rates, shapes (..., row) and (..., 2 row), from `arguments`."""
         values, slopes = np.maximum(arguments, 0.0), (arguments > 0).astype(np.float64)
-        if self._is_rounded.any():
-            at = self._is_rounded
-            values[..., at], slopes[..., at], *_ = hinge(
-                arguments[..., at], self.kinks.position[at], self.kinks.width[at]
-            )
+        at, width, least, at_zero = self._rounded
+        if at.size:
+            # As `hinge`, of which a step needs no more than this.
+            above = arguments[..., at]
+            root = np.hypot(above, width)
+            values[..., at] = np.maximum(0.5 * (above + root - at_zero), 0.0)
+            slopes[..., at] = 0.5 * (1.0 + above / root) * (above > least)
         return values @ self._by_hinge, slopes @ self._by_slope
 
     def lie_between(self, one: Array, other: Array) -> NDArray[np.bool_]:
