@@ -11,6 +11,7 @@ import sprung
 from sprung.campaign import Campaign
 from sprung.estimation import (
     FitResult,
+    LowPass,
     UsualValue,
     estimate_of,
     fit_linear,
@@ -27,7 +28,15 @@ from sprung.estimation.time_stepping import TimeSteppingObjective
 from sprung.preprocess import FreeDecay, prepare
 from sprung.selection.structure import ModelStructure, choose_structure
 from sprung.uncertainty import KnownValue
-from sprung.vehicle import TABLE_1_CAR, Readout, Vehicle, parameter_of, parameters_of_term
+from sprung.vehicle import (
+    LOW_PASS_CORNER,
+    TABLE_1_CAR,
+    Readout,
+    Vehicle,
+    is_of_sensor,
+    parameter_of,
+    parameters_of_term,
+)
 
 LOAD = {"name": "ballast", "items": [{"mass": 140.0, "position": (-1.0, 0.3, 0.5)}]}
 
@@ -285,6 +294,36 @@ def test_windows_of_time_add_up(decays: tuple[FreeDecay, ...], plain: ModelStruc
         informations.sum(axis=0) / np.outer(scale, scale), at.information / np.outer(scale, scale), atol=1e-6
     )
     assert found.disagreement_in_time < 2
+
+
+def test_readings_follow_the_corner_of_a_low_pass(
+    decays: tuple[FreeDecay, ...], plain: ModelStructure, optimum: FitResult
+) -> None:
+    """What is left of the records, against differences: with what the low-pass remembers, and whatever is fitted so far."""
+    larger = plain.with_terms(("rebound",))
+    begun = fit_nonlinear(
+        decays,
+        larger.nonlinear_models,
+        plain.sensors,
+        plain.known,
+        start=optimum.parameters | {"r_f": 1.3, "r_r": 1.2, LOW_PASS_CORNER: 96.0},
+        states=optimum.states,
+        near=True,
+        most=0,
+        low_pass=LowPass(90.0, 4),
+    )
+    at, position = begun.iterate.at, begun.names.index(LOW_PASS_CORNER)
+    assert begun.names[-1] == LOW_PASS_CORNER
+    assert begun.parameters[LOW_PASS_CORNER] == pytest.approx(96.0)
+    assert is_of_sensor(LOW_PASS_CORNER)
+    assert parameter_of(LOW_PASS_CORNER).unit == "Hz"
+    found = at.stepped.products[:, :, position, -1]
+    sums = []
+    for moved in (-0.01, 0.01):
+        values = at.values.copy()
+        values[position] += moved
+        sums.append(at.objective.at_states(values, at.weights, at.stepped.begin).residual_sums)
+    np.testing.assert_allclose(found, (sums[0] - sums[1]) / 0.04, rtol=1e-4, atol=1e-6 * np.abs(found).max())
 
 
 def test_a_step_gains_what_is_expected_of_it_where_initial_states_are_not_at_their_maximum(

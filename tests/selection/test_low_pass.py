@@ -13,7 +13,7 @@ import sprung
 from sprung.campaign import Campaign
 from sprung.estimation import LowPass, fit_linear
 from sprung.preprocess import prepare
-from sprung.selection import ModelSearch, choose_structure, confirm_low_pass, select_low_pass
+from sprung.selection import ModelSearch, choose_structure, confirm_low_pass, corner_of, select_low_pass
 from sprung.selection.low_pass import states_behind
 from sprung.vehicle import TABLE_1_CAR, Vehicle
 
@@ -59,10 +59,9 @@ def test_a_low_pass_of_the_loggers_is_found() -> None:
     """Its corner, and the parameters that it had moved."""
     search = fitted(LOGGER)
     found = select_low_pass(search)
-    low_pass = found.structure.low_pass
-    assert low_pass is not None
+    assert found.structure.low_pass is not None
     # Friction that turns round within a step of 1 ms seems to do so half a step later, a tenth of the delay of the low-pass.
-    assert low_pass.corner == pytest.approx(LOGGER.corner, rel=0.15)
+    assert corner_of(found) == pytest.approx(LOGGER.corner, rel=0.15)
     assert found.overdispersion < 0.7 * search.overdispersion
     before, after = (np.array([*errors(one).values()]) for one in (search, found))
     assert np.sqrt(np.mean(after**2)) < 0.5 * np.sqrt(np.mean(before**2))

@@ -9,7 +9,7 @@ import numpy as np
 
 from sprung.analysis.analysis import Analysis
 from sprung.preprocess import FreeDecay
-from sprung.vehicle import LOAD_MASS, is_of_sensor, parameter_names
+from sprung.vehicle import LOAD_MASS, parameter_names
 
 if TYPE_CHECKING:
     from sprung.planning import PlannedTest
@@ -42,7 +42,7 @@ def to_design(run: Analysis) -> PlannedTest:
     campaign, decays, fitted = run.campaign, run.decays, run.model.structure
     structure = fitted.with_terms(fitted.linear_terms)
     own = parameter_names(structure.tracks, structure.terms, structure.layout)
-    fit = run.uncertainty.only((*own, *filter(is_of_sensor, run.uncertainty.names)))
+    fit = run.uncertainty.only((*own, *(name for one in structure.sensors for name in one.uncertainties)))
     setup = setup_from_fit(
         fit,
         structure.tracks,

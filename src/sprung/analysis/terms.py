@@ -15,6 +15,7 @@ from sprung.selection import (
     ModelSearch,
     SelectionStep,
     begin_no_later,
+    corner_of,
     fit_forced_terms,
     from_contact,
     leave_out_refused,
@@ -98,10 +99,9 @@ def select_nonlinear_terms(run: Analysis, progress: Progress) -> Analysis:
         # Where a wheel last touched, a model with more than the vehicle has did not know.
         search = last if needed is last else from_contact(search.refit_as(needed))
     run = _with_search(run, run.model, search, "select_nonlinear_terms")
-    low_pass = search.structure.low_pass
-    if low_pass is None:
+    if search.structure.low_pass is None:
         return run
-    remark = f"recorded behind a low-pass of the loggers at {low_pass.corner:.0f} Hz, as the recordings show"
+    remark = f"recorded behind a low-pass of the loggers at {corner_of(search):.0f} Hz, as the recordings show"
     return replace(run, remarks=(*run.remarks, remark)).noted("select_nonlinear_terms", remark)
 
 

@@ -45,6 +45,11 @@ class LowPass(NamedTuple):
     passes_all: bool = False
 
     @property
+    def has_effect(self) -> bool:
+        """Whether anything passes it otherwise than without it, so that its corner may be found."""
+        return bool(np.isfinite(self.corner)) and not self.passes_all
+
+    @property
     def poles(self) -> Complex:
         """Its poles, 1/s, shape (order,)."""
         poles: Complex = 2 * np.pi * self.corner * _unit_poles(self.order)
@@ -112,6 +117,10 @@ class SampledLowPass(NamedTuple):
             return 0.0
         return self.low_pass.delay - self.lag / self.rate
 
+    def with_corner(self, corner: float) -> SampledLowPass:
+        """Return the low-pass with another corner, Hz, without the delay of this one."""
+        return self if self.low_pass is None else self._replace(low_pass=self.low_pass._replace(corner=corner))
+
     def at(self, finer: int) -> SampledLowPass:
         """Return the low-pass of signals that are sampled faster, with the same delay.
 
@@ -163,12 +172,27 @@ class SampledLowPass(NamedTuple):
         ndarray
             Orthonormal signals, zero where the low-pass is not known, shape (samples, signal).
         """
-        poles = np.roots(self.coefficients[1])
+        left, sizes, _ = np.linalg.svd(self.remembered(samples), full_matrices=False)
+        known: Real = left[:, sizes > _FORGOTTEN * sizes[0]]
+        return known
+
+    def remembered(self, samples: int) -> Real:
+        """Return an offset and the decays of its own modes, zero where it is not known.
+
+        Parameters
+        ----------
+        samples
+            Of the record.
+
+        Returns
+        -------
+        ndarray
+            Shape (samples, signal), not orthogonal; the same signals for any corner.
+        """
+        poles = np.zeros(0) if self.low_pass is None else np.exp(self.low_pass.poles / self.rate)
         decaying = np.exp(np.outer(np.arange(samples - self.lag), np.log(poles[poles.imag >= 0])))
         signals = np.hstack([np.ones((len(decaying), 1)), decaying.real, decaying.imag])
-        left, sizes, _ = np.linalg.svd(signals, full_matrices=False)
-        known: Real = left[:, sizes > _FORGOTTEN * sizes[0]]
-        return np.concatenate([known, np.zeros((self.lag, known.shape[1]))])
+        return np.concatenate([signals, np.zeros((self.lag, signals.shape[1]))])
 
 
 @lru_cache

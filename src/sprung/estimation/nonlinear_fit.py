@@ -21,7 +21,7 @@ from sprung.estimation.time_stepping import TimeSteppingObjective
 from sprung.preprocess import FreeDecay
 from sprung.progress import Progress, Step, silent
 from sprung.uncertainty import KnownValue
-from sprung.vehicle import NonlinearModel, Sensor
+from sprung.vehicle import LOW_PASS_CORNER, NonlinearModel, Sensor
 
 Real = NDArray[np.float64]
 
@@ -93,7 +93,7 @@ def fit_nonlinear(
     tilting
         Whether the sensors turn with the body, and measure the less of gravity.
     low_pass
-        Of the loggers, which all channels passed; None for none.
+        Of the loggers, which all channels passed; None for none. Its corner is an unknown of the fit.
     usual
         Usual values of parameters, as weak priors.
     progress
@@ -105,7 +105,7 @@ def fit_nonlinear(
     """
     laws = ", ".join(law.name for law, *_ in next(iter(models.values())).forces.laws)
     progress(Step(f"fitting with {laws}, step by step through all drops"))
-    known = statements_of(known, sensors, next(iter(models.values())).names)
+    known = _statements(known, sensors, models, low_pass)
     steps, values = 0, expected_nuisances(known) | dict(start)
     fine = _longest_step(models, values)
     beginnings = [_beginning(decay) for decay in decays]
@@ -174,7 +174,7 @@ def score_stepped_terms(
     dict
         In twice the log-likelihood, to second order.
     """
-    known = statements_of(known, sensors, next(iter(models.values())).names)
+    known = _statements(known, sensors, models, low_pass)
     values = expected_nuisances(known) | dict(values)
     objective = _objective(
         decays,
@@ -212,6 +212,19 @@ def score_stepped_terms(
     return gains
 
 
+def _statements(
+    known: Mapping[str, KnownValue],
+    sensors: Sequence[Sensor],
+    models: Mapping[str, NonlinearModel],
+    low_pass: LowPass | None,
+) -> dict[str, KnownValue]:
+    """Return everything that is known beforehand, SI, by name; of the corner of a low-pass hardly anything."""
+    stated = statements_of(known, sensors, next(iter(models.values())).names)
+    if low_pass is None or not low_pass.has_effect:
+        return stated
+    return stated | {LOW_PASS_CORNER: KnownValue(low_pass.corner, low_pass.corner)}
+
+
 def _longest_step(models: Mapping[str, NonlinearModel], values: Mapping[str, float]) -> float:
     """Return how long a step may be, s, so that its error is not taken for anything else."""
     model = next(iter(models.values()))
@@ -230,7 +243,8 @@ def _objective(
     low_pass: LowPass | None,
     longest_step: float,
 ) -> TimeSteppingObjective:
-    readout = readout_of(sensors, next(iter(models.values())).names, known)
+    has_corner = low_pass is not None and low_pass.has_effect
+    readout = readout_of(sensors, next(iter(models.values())).names, known, has_corner)
     return TimeSteppingObjective(tuple(decays), models, readout, states, tilting, longest_step, low_pass)
 
 

@@ -33,7 +33,9 @@ def statements_of(
     return {**usual, **stated, **uncertainties_of(sensors)}
 
 
-def readout_of(sensors: Sequence[Sensor], names: Sequence[str], known: Mapping[str, KnownValue]) -> Readout:
+def readout_of(
+    sensors: Sequence[Sensor], names: Sequence[str], known: Mapping[str, KnownValue], has_corner: bool = False
+) -> Readout:
     """Return what sensors read, everything uncertain of them as further parameters.
 
     Parameters
@@ -44,9 +46,12 @@ def readout_of(sensors: Sequence[Sensor], names: Sequence[str], known: Mapping[s
         Parameters of the model.
     known
         What is stated of the vehicle and of loads, SI.
+    has_corner
+        Whether the corner frequency of a low-pass that all passed is one of them.
 
     Returns
     -------
     Readout
     """
-    return Readout.with_unknowns(sensors, names, VehicleSize.of(known, sensors, layout_of(names)).wheelbase)
+    wheelbase = VehicleSize.of(known, sensors, layout_of(names)).wheelbase
+    return Readout.with_unknowns(sensors, names, wheelbase, has_corner)

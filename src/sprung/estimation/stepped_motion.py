@@ -16,9 +16,13 @@ from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import NearbyMotion, Stepper, Trajectory, differentiate_motions, segments_of
 
 if TYPE_CHECKING:
+    from sprung.estimation.low_pass import SampledLowPass
     from sprung.estimation.time_stepping import TimeSteppingObjective
 
 Real = NDArray[np.float64]
+
+_NEAR = 1e-3
+"""Part of the corner by which readings are differentiated: the error is of second order."""
 
 _FIRST_WINDOW, _WINDOWS = 0.05, 8
 """Length of the first window of time, s, and how many there are, each twice as long as the one before."""
@@ -89,11 +93,9 @@ class SteppedMotion:
         return felt[:, None] if self.objective.sensors_tilt else None
 
     @cached_property
-    def _readings(self) -> Real:
-        """What the sensors read, shape (drop, channel, time)."""
-        sensors, low_passes = self.objective.sensors, self.objective.low_passes
-        # Between its samples a low-pass sees where friction turns round.
-        of_sample = 1 if self.objective.low_pass is None else self.objective.every
+    def _before_low_pass(self) -> Real:
+        """What the sensors read before the low-pass, shape (drop, channel, time), `_of_sample` times for each sample."""
+        sensors, of_sample = self.objective.sensors, self._of_sample
         inputs = self._inputs(self.objective.every // of_sample)
         angles = inputs[:, :, self.objective.angles]
         readings: Real = sensors.at(self.values) @ self._observed(inputs).transpose(1, 2, 0)
@@ -104,10 +106,43 @@ class SteppedMotion:
             samples = sensors.delays(self.values)[:, None] * (of_sample * self._rates)
             rising = np.gradient(readings, axis=-1, edge_order=2)
             readings += 0.5 * samples**2 * np.gradient(rising, axis=-1, edge_order=2) - samples * rising
-        passed = [
-            low_pass.at(of_sample).filtered(own, axis=-1) for low_pass, own in zip(low_passes, readings, strict=True)
-        ]
-        return np.stack(passed)[..., ::of_sample]
+        return readings
+
+    @property
+    def _of_sample(self) -> int:
+        """How many readings a sample needs: between its samples a low-pass sees where friction turns round."""
+        return 1 if self.objective.low_pass is None else self.objective.every
+
+    @cached_property
+    def _low_passes(self) -> tuple[SampledLowPass, ...]:
+        """The low-pass of each drop."""
+        return self.objective.low_passes_at(self.values)
+
+    @cached_property
+    def _readings(self) -> Real:
+        """What the sensors read, shape (drop, channel, time)."""
+        return np.stack([self._behind(low_pass, drop) for drop, low_pass in enumerate(self._low_passes)])
+
+    def _behind(self, low_pass: SampledLowPass, drop: int) -> Real:
+        """Return what the sensors read of a drop behind a low-pass, shape (channel, time)."""
+        passed = low_pass.at(self._of_sample).filtered(self._before_low_pass[drop], axis=-1)
+        return passed[:, :: self._of_sample]
+
+    def _differentiate_by_corner(self, drop: int) -> Real:
+        """Differentiate what the records of a drop show by the corner: of the motion, and of what the low-pass remembers.
+
+        Returns
+        -------
+        ndarray
+            m/s² per Hz, shape (channel, sample).
+        """
+        samples, width = self.objective.samples[drop], 2 * _NEAR * self.values[self.objective.sensors.corner_position]
+        lower, higher = (self.objective.low_passes_at(self.values, 1 + step)[drop] for step in (-_NEAR, _NEAR))
+        of_motion = (self._behind(higher, drop) - self._behind(lower, drop))[:, :samples]
+        shown = np.linalg.pinv(self._low_passes[drop].remembered(samples)) @ self._deviations[drop, :, :samples].T
+        of_memory = (higher.remembered(samples) - lower.remembered(samples)) @ shown
+        slopes: Real = (of_motion + of_memory.T) / width
+        return slopes
 
     @property
     def _rates(self) -> Real:
@@ -115,12 +150,22 @@ class SteppedMotion:
         return np.array([decay.rate for decay in self.objective.decays])[:, None, None]
 
     @cached_property
+    def _free_signals(self) -> Real:
+        return self.objective.free_signals(self._low_passes)
+
+    @cached_property
+    def _deviations(self) -> Real:
+        """Measured minus modelled, shape (drop, channel, time)."""
+        deviations: Real = (self.objective.records - self._readings) * self.objective.is_sample[:, None, :]
+        return deviations
+
+    @cached_property
     def residuals(self) -> Real:
         """Measured minus modelled and what no motion explains, shape (drop, channel, time); zero where no sample counts."""
         objective = self.objective
         with np.errstate(over="ignore", invalid="ignore"):
-            residuals = (objective.records - self._readings) * objective.is_sample[:, None, :]
-            residuals -= (residuals @ objective.free_signals) @ np.swapaxes(objective.free_signals, 1, 2)
+            residuals = self._deviations.copy()
+            residuals -= (residuals @ self._free_signals) @ np.swapaxes(self._free_signals, 1, 2)
         counted: Real = residuals * (objective.channel_weights > 0)[:, :, None]
         return counted
 
@@ -204,13 +249,15 @@ class SteppedMotion:
             readings = np.insert(readings, [shared] * (len(self.values) - shared), 0.0, axis=2)
             by_sensor = np.moveaxis(inputs @ np.swapaxes(direct[objective.kind[drop]], 1, 2), 0, 2)
             readings[..., : len(self.values)] += by_sensor
-            readings = objective.low_passes[drop].filtered(readings, axis=0)
+            readings = self._low_passes[drop].filtered(readings, axis=0)
             for channel, position in objective.sensors.delay_positions:
                 readings[:, channel, position] = -np.gradient(self._readings[drop, channel, :samples], edge_order=2)
                 readings[:, channel, position] *= objective.decays[drop].rate
+            if (corner := objective.sensors.corner_position) is not None:
+                readings[:, :, corner] = self._differentiate_by_corner(drop).T
             readings[samples - objective.low_passes[drop].lag :] = 0.0
             columns = np.empty((channels, samples, readings.shape[2] + 1))
-            free = objective.free_signals[drop, :samples]
+            free = self._free_signals[drop, :samples]
             by_sample = readings.reshape(samples, -1)
             by_sample -= free @ (free.T @ by_sample)
             columns[..., :-1] = np.swapaxes(readings, 0, 1)

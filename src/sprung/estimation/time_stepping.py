@@ -61,7 +61,8 @@ class TimeSteppingObjective:
     longest_step
         s: over a longer one forces do not run straight.
     low_pass
-        Of the loggers, which all channels passed; None for none.
+        Of the loggers, which all channels passed; None for none. Its corner may be one of the parameters: this one is where a
+        fit begins, and what it delays and remembers is taken from it.
     """
 
     decays: Sequence[FreeDecay]
@@ -142,14 +143,22 @@ class TimeSteppingObjective:
         by_rate = {rate: SampledLowPass.of(self.low_pass, rate) for _, rate in self._kinds}
         return tuple(by_rate[decay.rate] for decay in self.decays)
 
-    @cached_property
-    def free_signals(self) -> Real:
-        """What each record may show whatever the motion, orthonormal, shape (drop, time, signal); see `SampledLowPass`."""
-        of_drops = [
-            low_pass.free_signals(decay.samples) for low_pass, decay in zip(self.low_passes, self.decays, strict=True)
-        ]
-        signals = np.zeros((len(of_drops), self.records.shape[2], max(own.shape[1] for own in of_drops)))
-        for padded, own in zip(signals, of_drops, strict=True):
+    def low_passes_at(self, values: Real, part: float = 1.0) -> tuple[SampledLowPass, ...]:
+        """Return the low-pass at parameter values, SI, shape (parameter,), or one with a part of its corner."""
+        position = self.sensors.corner_position
+        if position is None:
+            return self.low_passes
+        return tuple(one.with_corner(part * float(values[position])) for one in self.low_passes)
+
+    def free_signals(self, low_passes: Sequence[SampledLowPass]) -> Real:
+        """Return what each record may show whatever the motion behind a low-pass for each drop.
+
+        Orthonormal, shape (drop, time, signal); see `SampledLowPass`.
+        """
+        kinds = [(low_pass, decay.samples) for low_pass, decay in zip(low_passes, self.decays, strict=True)]
+        of_kinds = {kind: kind[0].free_signals(kind[1]) for kind in set(kinds)}
+        signals = np.zeros((len(kinds), self.records.shape[2], max(own.shape[1] for own in of_kinds.values())))
+        for padded, own in zip(signals, (of_kinds[kind] for kind in kinds), strict=True):
             padded[: own.shape[0], : own.shape[1]] = own
         return signals
 

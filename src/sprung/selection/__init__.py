@@ -12,7 +12,7 @@ from sprung.selection.error_budget import FALSE_ALARM_SHARE, required_gain
 from sprung.selection.finite_rotation import select_finite_rotation
 from sprung.selection.from_ordinary_vehicle import select_flexible_body
 from sprung.selection.linear_terms import ENGINE, SEPARATE_TRACKS, STARTED_LATER
-from sprung.selection.low_pass import confirm_low_pass, select_low_pass
+from sprung.selection.low_pass import confirm_low_pass, corner_of, select_low_pass
 from sprung.selection.model_term import ModelTerm
 from sprung.selection.nonlinear import select_nonlinear_terms
 from sprung.selection.scoring import WORTH_A_FIT, score_terms
@@ -44,6 +44,7 @@ __all__ = [
     "begin_no_later",
     "choose_structure",
     "confirm_low_pass",
+    "corner_of",
     "describe_terms",
     "final_tolerance",
     "fit_forced_terms",

@@ -1,43 +1,40 @@
 """The low-pass of the loggers: whether the recordings show one that all channels passed, and where its corner is.
 
-It moves no mode, but harmonics of knees and friction come later behind it than the wheels' motion. Nobody states it: the
-recordings decide by their likelihood, once the vehicle has forces that are not linear.
+It moves no mode, but harmonics of knees and friction come later behind it than the wheels' motion. Nobody states it: once the
+vehicle has forces that are not linear, its corner is one more unknown of their fit.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.estimation import HIGHEST_CORNER, LowPass, SampledLowPass
+from sprung.estimation import HIGHEST_CORNER, LowPass, SampledLowPass, wald_test
 from sprung.progress import Step
 from sprung.selection.search import ModelSearch
+from sprung.vehicle import LOW_PASS_CORNER
 
 Real = NDArray[np.float64]
 
 _ORDER = 4
 """Of the anti-alias filters of loggers."""
 
-_CORNER, _RATIO = 100.0, 1.25
-"""Corner that is tried first, Hz, and how far apart others are; half as far around one that was found."""
+_CORNER = 100.0
+"""Corner from which a fit begins, Hz."""
 
 _COLOURED = 1.1
 """Overdispersion from which a low-pass is looked for: it moves what is left by little."""
 
-_SAME = 0.05
-"""Relative difference of corners that is none in practice."""
-
-_NARROW, _FINE = 0.25, 0.02
-"""Logarithm of the ratio of corners between which the gain is a parabola, and of one from the best to be compared as well."""
+_BELOW = 0.8
+"""Part of a corner that was found from which another fit begins."""
 
 _LOWEST = 25.0
 """Hz below which no logger cuts off the motion of wheels."""
 
-_ITERATIONS, _MOST = 3, 100
-"""Iterations at the most before corners are compared, as a low-pass moves the optimum by little; and of a whole fit."""
+_FIRST, _ITERATIONS, _MOST = 3, 12, 100
+"""Iterations at the most without a low-pass, which moves the optimum by little; of one whose corner is far; of a whole fit."""
 
 
 def select_low_pass(search: ModelSearch) -> ModelSearch:
@@ -55,12 +52,24 @@ def select_low_pass(search: ModelSearch) -> ModelSearch:
     structure = search.structure
     if not structure.is_nonlinear or structure.low_pass is not None or search.overdispersion < _COLOURED:
         return search
-    likeliest = _likeliest(search, _CORNER, _RATIO)
-    if likeliest is None:
+    search.progress(Step("looking for a low-pass of the loggers"))
+    highest = _highest(search)
+    # Motions before a low-pass are stepped more finely: one at infinity does nothing else.
+    without = _refit_behind(search, LowPass(np.inf, _ORDER), _FIRST, beginning_only=True)
+    found = _refit_behind(search, LowPass(min(_CORNER, 0.9 * highest), _ORDER), _ITERATIONS, beginning_only=True)
+    if not _LOWEST < corner_of(found) < highest or not _gains_enough(found, without):
         return search
-    near, corner = likeliest
-    found = _refit_behind(near, LowPass(corner, _ORDER))
-    return found if found.gain_over(search) > search.required_of_switch else search
+    # Steps of time in which friction turns round make the likelihood rough: it is climbed from below as well.
+    lower = _refit_behind(search, LowPass(_BELOW * corner_of(found), _ORDER), beginning_only=True)
+    found = max(found, lower, key=lambda one: one.fit.loglikelihood)
+    found = _refit_behind(found, LowPass(corner_of(found), _ORDER), beginning_only=True)
+    # What records may show behind it is free, as nothing tells what it remembers: without it a fit has to be as free.
+    free = _refit_behind(without, LowPass(corner_of(found), _ORDER, passes_all=True), beginning_only=True)
+    # Where more is missing, the freedom explains some of that: it is enough to explain more, until all else is found.
+    if not found.gain_over(free) > (0.0 if search.is_overdispersed else search.required_of_switch):
+        return search
+    whole = found.refit(found.structure)
+    return whole if _gains_enough(whole, search) else search
 
 
 def confirm_low_pass(search: ModelSearch) -> ModelSearch:
@@ -75,67 +84,40 @@ def confirm_low_pass(search: ModelSearch) -> ModelSearch:
     -------
     ModelSearch
     """
-    present = search.structure.low_pass
-    if present is None:
+    if search.structure.low_pass is None:
         return search
-    likeliest = _likeliest(search, present.corner, _RATIO**0.5)
-    if likeliest is None:
-        return _refit_behind(search, None)
-    near, corner = likeliest
-    return search if abs(np.log(corner / present.corner)) < _SAME else _refit_behind(near, LowPass(corner, _ORDER))
+    highest = _highest(search)
+    lost = wald_test(search.fit, [(LOW_PASS_CORNER, highest)]) / search.overdispersion
+    is_there = _LOWEST < corner_of(search) < highest and lost > search.required_of_switch
+    if is_there and search.is_overdispersed:
+        # Where more is missing, the likelihood may rise nowhere from one to none.
+        without = _refit_behind(search, LowPass(np.inf, _ORDER), beginning_only=True)
+        is_there = _gains_enough(search.refit(search.structure, beginning_only=True), without)
+    return search if is_there else _refit_behind(search, None)
 
 
-def _likeliest(search: ModelSearch, first: float, ratio: float) -> tuple[ModelSearch, float] | None:
-    """Return the corner that explains the beginnings of the decays best, climbed to from a first one, and a fit near to it.
+def corner_of(search: ModelSearch) -> float:
+    """Return the corner of the low-pass of the loggers as the recordings show it, Hz; infinite without any.
 
-    Hz; None where none explains enough.
+    Parameters
+    ----------
+    search
+        A model and its fit.
+
+    Returns
+    -------
+    float
     """
-    highest = HIGHEST_CORNER * min(decay.rate for decay in search.decays)
-    search.progress(Step("looking for a low-pass of the loggers"))
-    # From behind a low-pass to none it may be far.
-    most = _ITERATIONS if search.structure.low_pass is None else _MOST
-    without = _refit_behind(search, LowPass(np.inf, _ORDER), most, beginning_only=True)
-    fits: dict[float, ModelSearch] = {}
-    gains: dict[float, float] = {}
-    waiting = [min(first, 0.9 * highest)]
-    while waiting := [corner for corner in waiting if _LOWEST < corner < highest]:
-        for corner in waiting:
-            fits[corner] = _begin_behind(_nearest(fits, corner, search), corner)
-            gains[corner] = fits[corner].gain_over(without)
-        best = max(gains, key=lambda corner: gains[corner])
-        # Where one that is too low only loses, a much higher one is tried, and then none.
-        lower = [best / ratio] * (best == min(gains) and gains[best] > 0)
-        higher = [best * (ratio if gains[best] > 0 else ratio**2)]
-        waiting = lower + higher * (best == max(gains) and (gains[best] > 0 or len(gains) == 1))
-    if not max(gains.values(), default=0.0) > search.required_of_switch:
-        return None
-    while (between := _between(gains)) is not None:
-        fits[between] = _begin_behind(_nearest(fits, between, search), between)
-        gains[between] = fits[between].gain_over(without)
-    best = max(gains, key=lambda corner: gains[corner])
-    # What records may show behind it is free, as nothing tells what it remembers: without it a fit has to be as free.
-    fits[best], free = (
-        _refit_behind(near, LowPass(best, _ORDER, passes_all), beginning_only=True)
-        for near, passes_all in ((fits[best], False), (without, True))
-    )
-    # Where more is missing, the freedom explains some of that: it is enough to explain more, until all else is found.
-    if not fits[best].gain_over(free) > (0.0 if search.is_overdispersed else search.required_of_switch):
-        return None
-    corner = _vertex(gains)
-    return _nearest(fits, corner, search), corner
+    return search.fit.parameters.get(LOW_PASS_CORNER, np.inf)
 
 
-def _nearest(fits: Mapping[float, ModelSearch], corner: float, first: ModelSearch) -> ModelSearch:
-    """Return the fit behind the low-pass whose corner is nearest to another one; the first one where there is none yet."""
-    return fits[min(fits, key=lambda other: abs(np.log(other / corner)))] if fits else first
+def _highest(search: ModelSearch) -> float:
+    """Return the corner in Hz from which a low-pass does nothing to any recording."""
+    return HIGHEST_CORNER * min(decay.rate for decay in search.decays)
 
 
-def _begin_behind(search: ModelSearch, corner: float) -> ModelSearch:
-    """Fit the model behind a low-pass to the beginnings of the decays.
-
-    One at infinity does nothing, but motions before it are stepped as finely as those before another one.
-    """
-    return _refit_behind(search, LowPass(corner, _ORDER), _ITERATIONS, beginning_only=True)
+def _gains_enough(search: ModelSearch, without: ModelSearch) -> bool:
+    return search.gain_over(without) > search.required_of_switch
 
 
 def _refit_behind(
@@ -156,40 +138,12 @@ def states_behind(search: ModelSearch, low_pass: LowPass | None) -> Real:
     ndarray
         SI, shape (drop, state + memory).
     """
-    states = []
+    states, corner = [], corner_of(search)
     for drop, decay in enumerate(search.fit.decays):
-        before, after = (
-            SampledLowPass.of(one, decay.rate).remaining_delay for one in (search.structure.low_pass, low_pass)
-        )
-        later = (after - before) * decay.rate
+        before, after = (SampledLowPass.of(one, decay.rate) for one in (search.structure.low_pass, low_pass))
+        present = before.with_corner(corner) if np.isfinite(corner) else before
+        later = (after.remaining_delay - present.remaining_delay) * decay.rate
         # The parabola through the first three samples.
         weights = (1 - later) * (2 - later) / 2, later * (2 - later), later * (later - 1) / 2
         states.append(search.fit.motion(drop, 0, 3) @ np.array(weights))
     return np.array(states)
-
-
-def _between(gains: Mapping[float, float]) -> float | None:
-    """Return the corner that is compared next, between the neighbours of the best one; None where these are near to it."""
-    corners = sorted(gains)
-    at = corners.index(max(corners, key=lambda corner: gains[corner]))
-    if not 0 < at < len(corners) - 1:
-        return None
-    below, best, above = corners[at - 1 : at + 2]
-    if np.log(above / below) < _NARROW:
-        return None
-    corner = _vertex(gains)
-    if abs(np.log(corner / best)) > _FINE:
-        return corner
-    return float(np.sqrt(best * (below if best**2 > above * below else above)))
-
-
-def _vertex(gains: Mapping[float, float]) -> float:
-    """Return the corner at which the gain is largest: the vertex of the parabola through the best one and its neighbours."""
-    corners = sorted(gains)
-    best = max(corners, key=lambda corner: gains[corner])
-    at = corners.index(best)
-    if not 0 < at < len(corners) - 1:
-        return best
-    near = corners[at - 1 : at + 2]
-    curvature, slope, _ = np.polyfit(np.log(near) - np.log(best), [gains[corner] for corner in near], 2)
-    return best * float(np.exp(-slope / (2 * curvature)))

@@ -56,6 +56,7 @@ from sprung.vehicle.nonlinear import NonlinearForces, NonlinearModel
 from sprung.vehicle.nonlinear_elements import NonlinearElement, ground_contact_elements, nonlinear_elements
 from sprung.vehicle.nuisances import (
     LOAD_MASS,
+    LOW_PASS_CORNER,
     SENSOR_UNKNOWNS,
     SensorQuantity,
     is_nuisance,
@@ -100,6 +101,7 @@ __all__ = [
     "LINEAR_EXTRAS",
     "LINEAR_LAWS",
     "LOAD_MASS",
+    "LOW_PASS_CORNER",
     "MOTION_RATIOS",
     "NEUTRAL",
     "PADS",

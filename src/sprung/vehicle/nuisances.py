@@ -1,4 +1,4 @@
-"""Parameters of a fit that belong to a load or to a sensor, not to the vehicle."""
+"""Parameters of a fit that belong to a load or to the sensors, not to the vehicle."""
 
 from __future__ import annotations
 
@@ -24,8 +24,14 @@ SENSOR_UNKNOWNS: Mapping[SensorQuantity, Parameter] = {
 """Each of these as an unknown of a fit, where it has the name `sensor_unknown`."""
 
 
+LOW_PASS_CORNER = "corner of the low-pass"  # noqa: S105 (a name, no password)
+"""Name of the corner frequency of the low-pass of the loggers that all channels passed."""
+
+_CORNER = Parameter("Hz", "corner frequency of the low-pass of the loggers that all channels passed", False)
+
+
 def parameter_of(name: str) -> Parameter:
-    """Return unit and meaning of any parameter of a fit: of the vehicle, the mass of a load, or an unknown of a sensor.
+    """Return unit and meaning of any parameter of a fit: of the vehicle, the mass of a load, or an unknown of the sensors.
 
     Parameters
     ----------
@@ -45,6 +51,8 @@ def parameter_of(name: str) -> Parameter:
         return of_vehicle
     if name.startswith(LOAD_MASS):
         return Parameter("kg", f"{name}, estimated from the recordings and its stated value", True)
+    if name == LOW_PASS_CORNER:
+        return _CORNER
     for quantity, unknown in SENSOR_UNKNOWNS.items():
         if name.startswith(sensor_unknown(quantity, "")):
             return unknown
@@ -68,12 +76,12 @@ def sensor_unknown(quantity: SensorQuantity, channel: str) -> str:
     return f"{quantity} of {channel}"
 
 
-_OF_SENSORS = tuple(sensor_unknown(quantity, "") for quantity in SENSOR_UNKNOWNS)
-"""First words of their names."""
+_OF_SENSORS = (*(sensor_unknown(quantity, "") for quantity in SENSOR_UNKNOWNS), LOW_PASS_CORNER)
+"""First words of the names of what may be unknown of sensors."""
 
 
 def is_of_sensor(name: str) -> bool:
-    """Whether a parameter is an unknown of a sensor.
+    """Whether a parameter is an unknown of a sensor, or of all of them.
 
     Parameters
     ----------
@@ -88,7 +96,7 @@ def is_of_sensor(name: str) -> bool:
 
 
 def is_nuisance(name: str) -> bool:
-    """Whether a parameter belongs to a load or to a sensor, not to the vehicle.
+    """Whether a parameter belongs to a load or to the sensors, not to the vehicle.
 
     Parameters
     ----------

@@ -14,7 +14,7 @@ from sprung.display import shown
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle.kinematics import Row, body_slopes
 from sprung.vehicle.model import Rows
-from sprung.vehicle.nuisances import SENSOR_UNKNOWNS, sensor_unknown
+from sprung.vehicle.nuisances import LOW_PASS_CORNER, SENSOR_UNKNOWNS, sensor_unknown
 from sprung.vehicle.response import Motion
 from sprung.vehicle.sensor import Sensor
 
@@ -43,7 +43,8 @@ class Readout:
     Attributes
     ----------
     names
-        The parameters: the vehicle's, masses of loads, then the unknowns of the sensors.
+        The parameters: the vehicle's, masses of loads, then the unknowns of the sensors, and the corner frequency of a low-pass
+        that all passed where it is one; what this does to readings is left to the caller.
     rows
         The sensors' rows as stated, over all parameters but those of the sensors; columns are those of Z.
     orders
@@ -85,7 +86,7 @@ class Readout:
             [[index.get(sensor_unknown(quantity, one.channel), -1) for quantity in SENSOR_UNKNOWNS] for one in sensors],
             dtype=np.int64,
         ).reshape(-1, len(SENSOR_UNKNOWNS))
-        own = names[: len(names) - int(np.sum(positions >= 0))]
+        own = names[: len(names) - int(np.sum(positions >= 0)) - int(LOW_PASS_CORNER in index)]
         read = [sensor.rows(own, wheelbase) for sensor in sensors]
         leaning = bool(np.any(positions[:, [_TILT_X, _TILT_Y]] >= 0))
         orders = tuple(sorted({order for one in read for order in one} | ({0} if leaning else set()))) or (2,)
@@ -99,7 +100,9 @@ class Readout:
         return cls(tuple(names), _stacked(read, orders, own), orders, positions, placed)
 
     @classmethod
-    def with_unknowns(cls, sensors: Sequence[Sensor], names: Sequence[str], wheelbase: float = 0.0) -> Readout:
+    def with_unknowns(
+        cls, sensors: Sequence[Sensor], names: Sequence[str], wheelbase: float = 0.0, has_corner: bool = False
+    ) -> Readout:
         """Return the readout with everything that is uncertain of the sensors as further parameters behind those of a list.
 
         Parameters
@@ -110,12 +113,15 @@ class Readout:
             The parameters of the vehicle.
         wheelbase
             Of a body that twists or bends, m.
+        has_corner
+            Whether the corner frequency of a low-pass that all passed is one of them.
 
         Returns
         -------
         Readout
         """
-        return cls.of(sensors, (*names, *(name for sensor in sensors for name in sensor.uncertainties)), wheelbase)
+        unknowns = (name for sensor in sensors for name in sensor.uncertainties)
+        return cls.of(sensors, (*names, *unknowns, *([LOW_PASS_CORNER] if has_corner else [])), wheelbase)
 
     @cached_property
     def shared(self) -> int:
@@ -126,6 +132,11 @@ class Readout:
     def _has(self) -> NDArray[np.bool_]:
         """Which unknowns any sensor has, shape (6,)."""
         return np.asarray((self.positions >= 0).any(axis=0))
+
+    @cached_property
+    def corner_position(self) -> int | None:
+        """Position of the corner frequency of a low-pass among the parameters; None where it is none of them."""
+        return self.names.index(LOW_PASS_CORNER) if LOW_PASS_CORNER in self.names else None
 
     @property
     def has_delays(self) -> bool:
@@ -183,7 +194,7 @@ class Readout:
         return placed * (1 + self._unknown(_GAIN, values)[..., None]) if self._has[_GAIN] else placed
 
     def slopes(self, values: Array) -> Array:
-        """Return the derivatives of the rows by the parameters; those by a delay are of no row, and zero.
+        """Return the derivatives of the rows by the parameters; those by a delay or a corner are of no row, and zero.
 
         Parameters
         ----------
@@ -195,7 +206,7 @@ class Readout:
         ndarray
             Shape (channel, parameter, column of Z).
         """
-        if not self._has.any():
+        if len(self.names) == self.shared:
             return self.rows.slopes
         channels, size = self.rows.affine.shape[:2]
         gains = 1 + self._unknown(_GAIN, values)
