@@ -313,6 +313,7 @@ def test_readings_follow_the_corner_of_a_low_pass(
         low_pass=LowPass(90.0, 4),
     )
     at, position = begun.iterate.at, begun.names.index(LOW_PASS_CORNER)
+    assert isinstance(at, TimeSteppingAt)
     assert begun.names[-1] == LOW_PASS_CORNER
     assert begun.parameters[LOW_PASS_CORNER] == pytest.approx(96.0)
     assert is_of_sensor(LOW_PASS_CORNER)

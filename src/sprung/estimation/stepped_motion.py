@@ -128,7 +128,7 @@ class SteppedMotion:
         passed = low_pass.at(self._of_sample).filtered(self._before_low_pass[drop], axis=-1)
         return passed[:, :: self._of_sample]
 
-    def _differentiate_by_corner(self, drop: int) -> Real:
+    def _differentiate_by_corner(self, drop: int, corner: float) -> Real:
         """Differentiate what the records of a drop show by the corner: of the motion, and of what the low-pass remembers.
 
         Returns
@@ -136,7 +136,7 @@ class SteppedMotion:
         ndarray
             m/s² per Hz, shape (channel, sample).
         """
-        samples, width = self.objective.samples[drop], 2 * _NEAR * self.values[self.objective.sensors.corner_position]
+        samples, width = self.objective.samples[drop], 2 * _NEAR * corner
         lower, higher = (self.objective.low_passes_at(self.values, 1 + step)[drop] for step in (-_NEAR, _NEAR))
         of_motion = (self._behind(higher, drop) - self._behind(lower, drop))[:, :samples]
         shown = np.linalg.pinv(self._low_passes[drop].remembered(samples)) @ self._deviations[drop, :, :samples].T
@@ -253,8 +253,8 @@ class SteppedMotion:
             for channel, position in objective.sensors.delay_positions:
                 readings[:, channel, position] = -np.gradient(self._readings[drop, channel, :samples], edge_order=2)
                 readings[:, channel, position] *= objective.decays[drop].rate
-            if (corner := objective.sensors.corner_position) is not None:
-                readings[:, :, corner] = self._differentiate_by_corner(drop).T
+            if (of_corner := objective.sensors.corner_position) is not None:
+                readings[:, :, of_corner] = self._differentiate_by_corner(drop, float(self.values[of_corner])).T
             readings[samples - objective.low_passes[drop].lag :] = 0.0
             columns = np.empty((channels, samples, readings.shape[2] + 1))
             free = self._free_signals[drop, :samples]
