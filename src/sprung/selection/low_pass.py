@@ -21,11 +21,8 @@ Real = NDArray[np.float64]
 _ORDER = 4
 """Of the anti-alias filters of loggers."""
 
-_CORNER = 100.0
-"""Corner from which a fit begins, Hz."""
-
-_COLOURED = 1.1
-"""Overdispersion from which a low-pass is looked for: it moves what is left by little."""
+_CORNERS = (100.0, 160.0)
+"""Corners from which a fit begins, Hz; the second, which does little, where the first explains less than none."""
 
 _BELOW = 0.8
 """Part of a corner that was found from which another fit begins."""
@@ -34,7 +31,8 @@ _LOWEST = 25.0
 """Hz below which no logger cuts off the motion of wheels."""
 
 _FIRST, _ITERATIONS, _MOST = 3, 12, 100
-"""Iterations at the most without a low-pass, which moves the optimum by little; of one whose corner is far; of a whole fit."""
+"""Iterations at the most after which a low-pass that is there explains more, as it moves the optimum by little; until its
+corner is found; and of a whole fit."""
 
 
 def select_low_pass(search: ModelSearch) -> ModelSearch:
@@ -50,25 +48,31 @@ def select_low_pass(search: ModelSearch) -> ModelSearch:
     ModelSearch
     """
     structure = search.structure
-    if not structure.is_nonlinear or structure.low_pass is not None or search.overdispersion < _COLOURED:
+    if not structure.is_nonlinear or structure.low_pass is not None:
         return search
     search.progress(Step("looking for a low-pass of the loggers"))
     highest = _highest(search)
     # Motions before a low-pass are stepped more finely: one at infinity does nothing else.
     without = _refit_behind(search, LowPass(np.inf, _ORDER), _FIRST, beginning_only=True)
-    found = _refit_behind(search, LowPass(min(_CORNER, 0.9 * highest), _ORDER), _ITERATIONS, beginning_only=True)
+    tried = (_begin_behind(search, min(corner, 0.8 * highest)) for corner in _CORNERS)
+    found = next((one for one in tried if one.gain_over(without) > 0), None)
+    if found is None:
+        return search
+    found = found.refit(found.structure, _ITERATIONS, beginning_only=True)
     if not _LOWEST < corner_of(found) < highest or not _gains_enough(found, without):
         return search
-    # Steps of time in which friction turns round make the likelihood rough: it is climbed from below as well.
-    lower = _refit_behind(search, LowPass(_BELOW * corner_of(found), _ORDER), beginning_only=True)
-    found = max(found, lower, key=lambda one: one.fit.loglikelihood)
+    if found.is_overdispersed:
+        # Steps of time in which friction turns round make the likelihood rough: it is climbed from below as well.
+        lower = _refit_behind(search, LowPass(_BELOW * corner_of(found), _ORDER), beginning_only=True)
+        found = max(found, lower, key=lambda one: one.fit.loglikelihood)
     found = _refit_behind(found, LowPass(corner_of(found), _ORDER), beginning_only=True)
     # What records may show behind it is free, as nothing tells what it remembers: without it a fit has to be as free.
     free = _refit_behind(without, LowPass(corner_of(found), _ORDER, passes_all=True), beginning_only=True)
     # Where more is missing, the freedom explains some of that: it is enough to explain more, until all else is found.
     if not found.gain_over(free) > (0.0 if search.is_overdispersed else search.required_of_switch):
         return search
-    whole = found.refit(found.structure)
+    is_whole = sum(decay.samples for decay in found.fit.decays) == sum(decay.samples for decay in search.decays)
+    whole = found if is_whole else found.refit(found.structure)
     return whole if _gains_enough(whole, search) else search
 
 
@@ -118,6 +122,11 @@ def _highest(search: ModelSearch) -> float:
 
 def _gains_enough(search: ModelSearch, without: ModelSearch) -> bool:
     return search.gain_over(without) > search.required_of_switch
+
+
+def _begin_behind(search: ModelSearch, corner: float) -> ModelSearch:
+    """Take the first steps of a fit behind a low-pass with a corner in Hz to the beginnings of the decays."""
+    return _refit_behind(search, LowPass(corner, _ORDER), _FIRST, beginning_only=True)
 
 
 def _refit_behind(
