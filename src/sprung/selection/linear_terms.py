@@ -25,6 +25,9 @@ SEPARATE_TRACKS = "tracks apart"
 ENGINE, OCCUPANTS, TWIST, BENDING = "engine", "occupants", "twist", "bending"
 """Terms with starts of their own: masses on springs, and a body that is not one rigid mass."""
 
+DAMPER_MOUNT = "damper-mount"
+"""Rubber in series with the dampers."""
+
 INTERCONNECTION = "interconnection"
 """Left and right connected by a fluid line."""
 
@@ -219,7 +222,7 @@ LINEAR_TERMS = (
         band=(5.5, 30.0),
     ),
     ModelTerm(
-        "damper-mount",
+        DAMPER_MOUNT,
         of_axles(lambda p, axle: p[f"k_s{axle}"] / p[f"k_d{axle}"]),
         usual=lambda own, _: usual_rubber(own),
         typical=1 / USUAL_MOUNT,
@@ -268,7 +271,7 @@ LINEAR_TERMS = (
         held="c_z",
         character=_relaxation_times,
         band=(_MOST_LOSS, _MOST_RELAXATION),
-        counterpart="damper-mount",
+        counterpart=DAMPER_MOUNT,
         undefined=lambda own, _: {
             name: _ALMOST_NONE * value for name, value in usual_rubber(own).items() if name.startswith(("k_z", "c_z"))
         },

@@ -14,6 +14,8 @@ from sprung.estimation import (
     score_nonlinear_terms,
     score_stepped_terms,
 )
+from sprung.preprocess import FreeDecay
+from sprung.selection.linear_terms import DAMPER_MOUNT
 from sprung.selection.nonlinear_terms import BUMP_STOP
 from sprung.selection.search import ModelSearch
 from sprung.selection.starts import (
@@ -152,16 +154,26 @@ def _nonlinear_with_stops(search: ModelSearch, terms: Sequence[str]) -> tuple[Mo
 
 
 def _stepped(search: ModelSearch, terms: Sequence[str]) -> Scores:
-    """Score any terms at a nonlinear fit, in one evaluation of the model that has them all.
+    """Score any terms at a nonlinear fit, in one evaluation of the model that has them all; but for mounts.
 
     The sizes to expect are not computed, and the typical ones are returned.
     """
+    # A mount that is nearly rigid follows faster than any step, which the scores of all terms beside it show.
+    groups = [[term for term in terms if term != DAMPER_MOUNT], [term for term in terms if term == DAMPER_MOUNT]]
     # Behind a low-pass the motion between the samples that are left would be missed.
     rate, duration = (_RATE, _DURATION) if search.structure.low_pass is None else (np.inf, _BEHIND_LOW_PASS)
     decays, part = thinned(search.decays, rate, duration)
+    gains = {
+        term: gain / part for group in groups if group for term, gain in _score_together(search, decays, group).items()
+    }
+    return {term: (gain, TERMS[term].typical) for term, gain in gains.items()}
+
+
+def _score_together(search: ModelSearch, decays: Sequence[FreeDecay], terms: Sequence[str]) -> dict[str, float]:
+    """Score terms at a nonlinear fit in one evaluation of the model that has them all."""
     largest, own = search.with_terms(terms), search.fit.parameters
     separated = largest.tracks != search.structure.tracks
-    gains = score_stepped_terms(
+    return score_stepped_terms(
         decays,
         largest.nonlinear_models,
         search.structure.sensors,
@@ -175,4 +187,3 @@ def _stepped(search: ModelSearch, terms: Sequence[str]) -> Scores:
         tilting=search.structure.gravity_leakage,
         low_pass=search.structure.low_pass,
     )
-    return {term: (gain / part, TERMS[term].typical) for term, gain in gains.items()}
