@@ -24,6 +24,9 @@ _ORDER = 4
 _CORNERS = (100.0, 160.0)
 """Corners from which a fit begins, Hz; the second, which does little, where the first explains less than none."""
 
+_COLOURED = 1.1
+"""Overdispersion from which a low-pass is looked for: it moves what is left by little."""
+
 _BELOW = 0.8
 """Part of a corner that was found from which another fit begins."""
 
@@ -49,6 +52,9 @@ def select_low_pass(search: ModelSearch) -> ModelSearch:
     """
     structure = search.structure
     if not structure.is_nonlinear or structure.low_pass is not None:
+        return search
+    # Where every usual term was fitted at once, what the low-pass does may be made up for by knees and mounts.
+    if search.overdispersion < _COLOURED and not structure.usual:
         return search
     search.progress(Step("looking for a low-pass of the loggers"))
     highest = _highest(search)
