@@ -22,7 +22,7 @@ from sprung.estimation.linear_scores import score_linear_term, score_linear_term
 from sprung.estimation.low_pass import HIGHEST_CORNER, LowPass, SampledLowPass, unexplained_squares
 from sprung.estimation.modes import UNNAMED, ModeEstimate, mode_estimates
 from sprung.estimation.monomials import parameters_from_matrices, shape_of
-from sprung.estimation.nonlinear_fit import fit_nonlinear, score_stepped_terms
+from sprung.estimation.nonlinear_fit import beginning_of, fit_nonlinear, score_stepped_terms
 from sprung.estimation.nonlinear_scores import score_nonlinear_terms
 from sprung.estimation.overdispersion import autocorrelation_inflation
 from sprung.estimation.prediction import Prediction, predictions
@@ -78,6 +78,7 @@ __all__ = [
     "UsualValue",
     "VehicleSize",
     "autocorrelation_inflation",
+    "beginning_of",
     "canonical_basis",
     "characteristics_of",
     "clear_of_splines",

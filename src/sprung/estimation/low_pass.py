@@ -112,7 +112,7 @@ class SampledLowPass(NamedTuple):
 
     @property
     def remaining_delay(self) -> float:
-        """What is left of its delay of slow motions, s: half a sample at the most."""
+        """What is left of its delay of slow motions, s: half a sample at the most, unless it has another corner since."""
         if self.low_pass is None or self.low_pass.passes_all:
             return 0.0
         return self.low_pass.delay - self.lag / self.rate
@@ -172,9 +172,7 @@ class SampledLowPass(NamedTuple):
         ndarray
             Orthonormal signals, zero where the low-pass is not known, shape (samples, signal).
         """
-        left, sizes, _ = np.linalg.svd(self.remembered(samples), full_matrices=False)
-        known: Real = left[:, sizes > _FORGOTTEN * sizes[0]]
-        return known
+        return _free_signals(self, samples)
 
     def remembered(self, samples: int) -> Real:
         """Return an offset and the decays of its own modes, zero where it is not known.
@@ -193,6 +191,13 @@ class SampledLowPass(NamedTuple):
         decaying = np.exp(np.outer(np.arange(samples - self.lag), np.log(poles[poles.imag >= 0])))
         signals = np.hstack([np.ones((len(decaying), 1)), decaying.real, decaying.imag])
         return np.concatenate([signals, np.zeros((self.lag, signals.shape[1]))])
+
+
+@lru_cache
+def _free_signals(sampled: SampledLowPass, samples: int) -> Real:
+    left, sizes, _ = np.linalg.svd(sampled.remembered(samples), full_matrices=False)
+    known: Real = left[:, sizes > _FORGOTTEN * sizes[0]]
+    return known
 
 
 @lru_cache

@@ -108,7 +108,7 @@ def fit_nonlinear(
     known = _statements(known, sensors, models, low_pass)
     steps, values = 0, expected_nuisances(known) | dict(start)
     fine = _longest_step(models, values)
-    beginnings = [_beginning(decay) for decay in decays]
+    beginnings = [beginning_of(decay) for decay in decays]
     # What a low-pass makes of a friction that turns round depends on when it does: its corner is found by fits to beginnings.
     stages = (
         [
@@ -243,8 +243,7 @@ def _objective(
     low_pass: LowPass | None,
     longest_step: float,
 ) -> TimeSteppingObjective:
-    has_corner = low_pass is not None and low_pass.has_effect
-    readout = readout_of(sensors, next(iter(models.values())).names, known, has_corner)
+    readout = readout_of(sensors, next(iter(models.values())).names, known)
     return TimeSteppingObjective(tuple(decays), models, readout, states, tilting, longest_step, low_pass)
 
 
@@ -258,6 +257,16 @@ def _problem(
     return EstimationProblem(objective, PriorsAndConstraints(coordinates, known, usual))
 
 
-def _beginning(decay: FreeDecay) -> FreeDecay:
-    """Return the beginning of a decay."""
+def beginning_of(decay: FreeDecay) -> FreeDecay:
+    """Return the beginning of a decay, which is fitted first.
+
+    Parameters
+    ----------
+    decay
+        The whole.
+
+    Returns
+    -------
+    FreeDecay
+    """
     return replace(decay, values=decay.values[:, : int(_HORIZON * decay.rate)])

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from sprung.estimation.starts import VehicleSize
 from sprung.uncertainty import KnownValue
-from sprung.vehicle import PARAMETERS, Readout, Sensor, layout_of, parameter_of, uncertainties_of
+from sprung.vehicle import LOW_PASS_CORNER, PARAMETERS, Readout, Sensor, layout_of, parameter_of, uncertainties_of
 
 
 def statements_of(
@@ -33,9 +33,7 @@ def statements_of(
     return {**usual, **stated, **uncertainties_of(sensors)}
 
 
-def readout_of(
-    sensors: Sequence[Sensor], names: Sequence[str], known: Mapping[str, KnownValue], has_corner: bool = False
-) -> Readout:
+def readout_of(sensors: Sequence[Sensor], names: Sequence[str], known: Mapping[str, KnownValue]) -> Readout:
     """Return what sensors read, everything uncertain of them as further parameters.
 
     Parameters
@@ -45,13 +43,11 @@ def readout_of(
     names
         Parameters of the model.
     known
-        What is stated of the vehicle and of loads, SI.
-    has_corner
-        Whether the corner frequency of a low-pass that all passed is one of them.
+        What is known beforehand, SI, by name; the corner of a low-pass that all passed is a parameter if it is among them.
 
     Returns
     -------
     Readout
     """
     wheelbase = VehicleSize.of(known, sensors, layout_of(names)).wheelbase
-    return Readout.with_unknowns(sensors, names, wheelbase, has_corner)
+    return Readout.with_unknowns(sensors, names, wheelbase, has_corner=LOW_PASS_CORNER in known)

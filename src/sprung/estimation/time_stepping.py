@@ -62,7 +62,7 @@ class TimeSteppingObjective:
         s: over a longer one forces do not run straight.
     low_pass
         Of the loggers, which all channels passed; None for none. Its corner may be one of the parameters: this one is where a
-        fit begins, and what it delays and remembers is taken from it.
+        fit begins, and the samples of its delay are taken from it.
     """
 
     decays: Sequence[FreeDecay]
@@ -155,10 +155,11 @@ class TimeSteppingObjective:
 
         Orthonormal, shape (drop, time, signal); see `SampledLowPass`.
         """
-        kinds = [(low_pass, decay.samples) for low_pass, decay in zip(low_passes, self.decays, strict=True)]
-        of_kinds = {kind: kind[0].free_signals(kind[1]) for kind in set(kinds)}
-        signals = np.zeros((len(kinds), self.records.shape[2], max(own.shape[1] for own in of_kinds.values())))
-        for padded, own in zip(signals, (of_kinds[kind] for kind in kinds), strict=True):
+        of_drops = [
+            low_pass.free_signals(decay.samples) for low_pass, decay in zip(low_passes, self.decays, strict=True)
+        ]
+        signals = np.zeros((len(of_drops), self.records.shape[2], max(own.shape[1] for own in of_drops)))
+        for padded, own in zip(signals, of_drops, strict=True):
             padded[: own.shape[0], : own.shape[1]] = own
         return signals
 

@@ -57,15 +57,14 @@ def select_low_pass(search: ModelSearch) -> ModelSearch:
     if search.overdispersion < _COLOURED and not structure.usual:
         return search
     search.progress(Step("looking for a low-pass of the loggers"))
-    highest = _highest(search)
     # Motions before a low-pass are stepped more finely: one at infinity does nothing else.
     without = _refit_behind(search, LowPass(np.inf, _ORDER), _FIRST, beginning_only=True)
-    tried = (_begin_behind(search, min(corner, 0.8 * highest)) for corner in _CORNERS)
+    tried = (_begin_behind(search, min(corner, 0.8 * _highest(search))) for corner in _CORNERS)
     found = next((one for one in tried if one.gain_over(without) > 0), None)
     if found is None:
         return search
     found = found.refit(found.structure, _ITERATIONS, beginning_only=True)
-    if not _LOWEST < corner_of(found) < highest or not _gains_enough(found, without):
+    if not _is_possible(found) or not _gains_enough(found, without):
         return search
     if found.is_overdispersed:
         # Steps of time in which friction turns round make the likelihood rough: it is climbed from below as well.
@@ -96,9 +95,8 @@ def confirm_low_pass(search: ModelSearch) -> ModelSearch:
     """
     if search.structure.low_pass is None:
         return search
-    highest = _highest(search)
-    lost = wald_test(search.fit, [(LOW_PASS_CORNER, highest)]) / search.overdispersion
-    is_there = _LOWEST < corner_of(search) < highest and lost > search.required_of_switch
+    lost = wald_test(search.fit, [(LOW_PASS_CORNER, _highest(search))]) / search.overdispersion
+    is_there = _is_possible(search) and lost > search.required_of_switch
     if is_there and search.is_overdispersed:
         # Where more is missing, the likelihood may rise nowhere from one to none.
         without = _refit_behind(search, LowPass(np.inf, _ORDER), beginning_only=True)
@@ -124,6 +122,11 @@ def corner_of(search: ModelSearch) -> float:
 def _highest(search: ModelSearch) -> float:
     """Return the corner in Hz from which a low-pass does nothing to any recording."""
     return HIGHEST_CORNER * min(decay.rate for decay in search.decays)
+
+
+def _is_possible(search: ModelSearch) -> bool:
+    """Whether a logger may have the corner that was found, and the recordings show it."""
+    return _LOWEST < corner_of(search) < _highest(search)
 
 
 def _gains_enough(search: ModelSearch, without: ModelSearch) -> bool:

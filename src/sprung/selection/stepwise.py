@@ -10,16 +10,13 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from dataclasses import replace
 
-import numpy as np
-
-from sprung.estimation import FitResult
+from sprung.estimation import FitResult, beginning_of
 from sprung.selection.backward_elimination import counterpart_of, leave_out_unneeded
 from sprung.selection.contact import from_contact
 from sprung.selection.error_budget import MISFIT_LEFT_BY_ALL
 from sprung.selection.low_pass import confirm_low_pass, select_low_pass
 from sprung.selection.scoring import WORTH_A_FIT, Scores, score_terms
 from sprung.selection.search import ModelSearch
-from sprung.selection.starts import thinned
 from sprung.selection.term_fits import (
     begin_nonlinear_fit,
     fit_linear_term,
@@ -41,9 +38,6 @@ _EXPLAINED = 0.7
 
 _RIVALS, _RIVAL_SCORE = 2, 0.5
 """How many terms are fitted beside one that leaves a misfit, and their scores at the least, as a part of its score."""
-
-_BEGINNING = 1.0
-"""s of the decays in which terms are looked for first beside nonlinear ones."""
 
 _FURTHER_ROUNDS, _TRIED_BESIDE = 8, 2
 """How many times terms are looked for beside nonlinear ones, and how many are fitted each time until one is accepted."""
@@ -96,7 +90,7 @@ def select_terms_beside(search: ModelSearch) -> ModelSearch:
     -------
     ModelSearch
     """
-    beginnings, _ = thinned(search.decays, np.inf, _BEGINNING)
+    beginnings = [beginning_of(decay) for decay in search.decays]
     early = from_contact(replace(search, decays=beginnings), on_the_way=True)
     early = _select_further_terms(early, whole=False)
     whole = [
