@@ -10,6 +10,7 @@ import sprung
 from sprung.analysis import AnalysisOptions
 from sprung.analysis.analysis import Analysis
 from sprung.analysis.stages import STAGES
+from sprung.selection.ordinary_vehicle import fit_usual_terms
 from sprung.selection.term_fits import fit_forced_terms
 from sprung.uncertainty import KnownValue
 from sprung.vehicle import TABLE_1_CAR, Sensor, Vehicle
@@ -52,6 +53,29 @@ def test_a_fit_comes_back_from_wheels_heavier_than_the_body() -> None:
     assert {name: found[name] for name in ("m_u", "k_t", "F")} == pytest.approx(
         {"m_u": 100.0, "k_t": 320e3, "F": 30.0}, rel=0.01
     )
+
+
+def test_what_differs_between_the_sides_of_a_lost_friction_goes_with_it() -> None:
+    """A vehicle without friction: without it nothing is stepped."""
+    smooth = RIG.with_values(F=None, s=None, c_s=900.0)
+    known = {"m_s": 433.0, "t": 0.75, "m_u": KnownValue(100.0, 5.0)}
+    campaign = sprung.simulate(
+        smooth,
+        sensors=sensors(),
+        drops=BOTH_ENDS,
+        push={"shape": "rope"},
+        known=known,
+        noise=2e-5,
+        seed=1,
+        duration=2,
+        rate=250,
+    )
+    run = Analysis.start(campaign, AnalysisOptions(tracks="shared", terms=()), STAGES[:3]).run()
+    rich = run.model.structure.with_terms(("friction", "uneven-friction"))
+    found = fit_usual_terms(run.model, rich)
+    assert found is not None
+    assert found.structure.terms == rich.terms
+    assert abs(found.fit.parameters["F"]) < 1.0
 
 
 @pytest.mark.slow

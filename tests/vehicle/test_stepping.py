@@ -12,6 +12,7 @@ from scipy.integrate import solve_ivp
 from sprung.vehicle import (
     EMPTY,
     EXTRAS,
+    LAYOUTS,
     LINEAR_EXTRAS,
     TABLE_1_CAR,
     Load,
@@ -322,6 +323,30 @@ def test_motions_near_to_others_are_those_of_the_steps(extras: tuple[str, ...]) 
             integrate_near(there, states, memories, 301, 2, near), expected, sizes, strict=True
         ):
             np.testing.assert_allclose(one, other, atol=1e-6 * size)
+
+
+def test_motions_near_to_others_where_coordinates_without_mass_are_odd_in_number() -> None:
+    """A quarter car with a damper mount has three displacements and two velocities."""
+    extras = ("damper-mount", "friction")
+    car = {"m_s": 350.0, "m_u": 40.0, "k_s": 2e4, "k_t": 2e5, "c_s": 1500.0, "k_d": 3e5, "F": 60.0, "s": 1e5}
+    names = parameter_names("shared", extras, LAYOUTS["quarter"])
+    assert set(names) == set(car)
+    values = np.array([car[name] for name in names])
+    forces = nonlinear_elements("shared", extras, load={"": 0.0}, layout=LAYOUTS["quarter"])
+    model = NonlinearModel.of(linear_elements("shared", extras, layout=LAYOUTS["quarter"]), forces, names, EMPTY)
+
+    def motion(values: Array) -> Stepper:
+        return Stepper.of([model], [0.002], np.array([0]), values)
+
+    before, states, memories = motion(values), np.array([[0.03, 0.01, 0.0, 0.0, 0.0]]), np.zeros((1, 1))
+    known = before.integrate(states, memories, 301)
+    _, segments, transitions = differentiate_motions(before, known, np.zeros((1, 0, 6)), 2)
+    first = np.arange(segments.shape[1]) * segments_of(301, 2)[1]
+    starts = np.concatenate([known.states[first], known.memories[first]], axis=2)
+    near = NearbyMotion(np.swapaxes(starts, 0, 1), transitions, np.concatenate([known.forces, known.surplus], axis=2))
+    there = motion(1.003 * values)
+    expected, found = there.integrate(states, memories, 301), integrate_near(there, states, memories, 301, 2, near)
+    np.testing.assert_allclose(found.states, expected.states, atol=1e-6 * np.abs(expected.states).max())
 
 
 @pytest.mark.parametrize("friction", [0.0, 0.3, 100.0])

@@ -198,7 +198,7 @@ def fit_usual_terms(search: ModelSearch, rich: ModelStructure) -> ModelSearch | 
     best = _fit_beginnings(search, start, rich)
     lost = {term for term in rich.terms if TERMS[term].resembles_others and (best is None or best.is_lost(term))}
     if lost:
-        without = rich.with_terms(tuple(term for term in rich.terms if term not in lost))
+        without = start.without(*lost)
         other = _fit_beginnings(search, start, without) if best is None else _refit_beginnings(search, best, without)
         again = None if other is None else _fit_again(search, other, rich, lost)
         best = max(

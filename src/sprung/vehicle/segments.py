@@ -217,5 +217,5 @@ def _scale(stepper: Stepper, starts: Array, forces: Array) -> Array:
     unnoticed = np.divide(
         np.abs(forces[..., :rows]).max(), effects, out=np.full_like(effects, np.inf), where=effects > 0
     )
-    scales = [np.full(state // 2, max(part.max(), _TINY)) for part in np.split(motion, 2)]
+    scales = [np.full(len(part), max(part.max(), _TINY)) for part in np.split(motion, [stepper.displacements])]
     return np.concatenate([*scales, np.maximum(memories, unnoticed)])

@@ -87,6 +87,8 @@ class Stepper:
         Of the steps, s, shape (kind,).
     kind
         Which of them each drop uses, shape (drop,).
+    displacements
+        How many of a state are displacements; velocities follow, of coordinates with mass only.
     """
 
     forces: NonlinearForces
@@ -97,6 +99,7 @@ class Stepper:
     input_slopes: Array
     lengths: Array
     kind: Index
+    displacements: int
 
     @classmethod
     def of(cls, models: Sequence[NonlinearModel], lengths: Sequence[float], kind: Index, values: Array) -> Stepper:
@@ -106,7 +109,8 @@ class Stepper:
             for model, length in zip(models, lengths, strict=True)
         ]
         steps, step_slopes, inputs, input_slopes = (np.stack(part) for part in zip(*computed, strict=True))
-        return cls(models[0].forces, values, steps, step_slopes, inputs, input_slopes, np.array(lengths), kind)
+        n = len(models[0].linear.heave)
+        return cls(models[0].forces, values, steps, step_slopes, inputs, input_slopes, np.array(lengths), kind, n)
 
     def of_kind(self, kind: int) -> Stepper:
         """Return the steps of one load and length alone."""
