@@ -58,7 +58,7 @@ def test_a_fit_comes_back_from_wheels_heavier_than_the_body() -> None:
 def test_what_differs_between_the_sides_of_a_lost_friction_goes_with_it() -> None:
     """A vehicle without friction: without it nothing is stepped."""
     smooth = RIG.with_values(F=None, s=None, c_s=900.0)
-    known = {"m_s": 433.0, "t": 0.75, "m_u": KnownValue(100.0, 5.0)}
+    known: dict[str, float | KnownValue] = {"m_s": 433.0, "t": 0.75, "m_u": KnownValue(100.0, 5.0)}
     campaign = sprung.simulate(
         smooth,
         sensors=sensors(),
