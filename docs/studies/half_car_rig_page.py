@@ -179,8 +179,7 @@ Reasons of the verdicts:
   left of the body's motion, in a trial outside the program; k_s and k_t move by less than 0.5 %.
 - The undamped rig was fitted with left/right differences of rates and damping as well, known to be 0 within about 1 % of the
   rates; without them its right wheel is off by 4.7 % and it is rejected. Its m_u is 10 kg below that of the other settings,
-  and its tyre damping a quarter of theirs. With "200" its fit begins at an interconnection of negative rate, which grows
-  without bounds, and fails.
+  and its tyre damping a quarter of theirs.
 - k_s and m_u agree to the percents above, but differ by four of their standard errors and more: these contain how far the lifts
   of one setting disagree, and not what all lifts of a setting have in common.
 - An added mass is a small difference: 0.1 % of the whole mass is 2.4 % of the lighter one.
