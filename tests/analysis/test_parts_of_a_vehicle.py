@@ -25,17 +25,16 @@ WITH_TERMS = (
 WITH_CURVES = (
     QUARTER.with_values(F=25.0, s=2e5, r=1.6),
     QUARTER.with_values(F=25.0, s=2e5, k_d=2.4e5),
-    ROLL_PLANE.with_values(k_x=15e3, c_x=4.8e3, F=60.0, s=2e5),
     ROLL_PLANE.with_values(v_k=0.12, q=0.5),
     ROLL_PLANE.with_values(F=60.0, s=2e5, d_F=25.0),
 )
 
 
-def simulated(vehicle: Vehicle, noise: float = 0.0, seed: int = 1) -> sprung.Campaign:
+def simulated(vehicle: Vehicle, noise: float = 0.0, seed: int = 1, rate: float = 500.0) -> sprung.Campaign:
     """A campaign with a bag of sand, 10 % of the vehicle, that is off the middle where that is possible."""
     position = (-0.6 if vehicle.layout.pitches else 0.0, 0.15 if vehicle.layout.rolls else 0.0, 0.5)
     load = {"name": "bag", "items": [{"mass": 0.1 * vehicle.total_mass, "position": position}]}
-    return sprung.simulate(vehicle, loads=[load], noise=noise, seed=seed)
+    return sprung.simulate(vehicle, loads=[load], noise=noise, seed=seed, rate=rate)
 
 
 @pytest.mark.parametrize("vehicle", [*PARTS.values(), *WITH_TERMS], ids=lambda one: "-".join((one.model, *one.extras)))
@@ -70,8 +69,8 @@ def test_a_known_difference_between_both_sides_may_be_negative(tmp_path: Path) -
 @pytest.mark.long
 @pytest.mark.parametrize("vehicle", WITH_CURVES, ids=lambda one: "-".join((one.model, *one.extras)))
 def test_nonlinear_terms_are_those_of_a_whole_vehicle(vehicle: Vehicle) -> None:
-    """The fit steps more coarsely than the simulation, which a tenth of a thousandth allows for."""
-    result = sprung.identify(simulated(vehicle), extras=vehicle.extras, tracks=vehicle.tracks)
+    """The fit steps more coarsely than the simulation: half a millisecond, from sample to sample, errs by less than 1e-4."""
+    result = sprung.identify(simulated(vehicle, rate=2000.0), extras=vehicle.extras, tracks=vehicle.tracks)
     for name, value in vehicle.parameters.items():
         assert result.parameters[name].value == pytest.approx(value, rel=1e-4), name
 

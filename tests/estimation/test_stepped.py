@@ -138,6 +138,7 @@ def test_scores_are_those_of_the_linear_fit(
         states=optimum.states,
         together=[(name,) for name in optimum.names],
         candidates={"anti-roll": [("k_af",), ("k_ar",)]},
+        longest_step=0.0025,
     )["anti-roll"]
     assert by_modes > 10
     # The weights of the channels are not quite the same: those of the modes are taken before initial states are known.
@@ -181,6 +182,7 @@ def test_scores_of_forces_need_no_steps(
         states=found.states,
         together=[(name,) for name in found.names],
         candidates={extra: [(name,) for name in names] for extra, names in brought.items()},
+        longest_step=0.0025,
     )
     assert min(by_modes["friction"][0], by_modes["rebound"][0]) > 50
     # A motion that decays fast is followed in parts, and long drops one by one: with the same scores, to rounding.

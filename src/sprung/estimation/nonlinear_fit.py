@@ -149,6 +149,7 @@ def score_stepped_terms(
     states: Real,
     together: Sequence[Sequence[str]],
     candidates: Mapping[str, Sequence[Sequence[str]]],
+    longest_step: float,
     tilting: bool = False,
     low_pass: LowPass | None = None,
 ) -> dict[str, float]:
@@ -166,6 +167,8 @@ def score_stepped_terms(
         The directions of the fitted model: parameters that move together in it.
     candidates
         The further directions of each larger one.
+    longest_step
+        s: that of the fit, if it is short. A longer one's error would be taken for what larger models gain.
     tilting, low_pass
         As for `fit_nonlinear`.
 
@@ -184,7 +187,7 @@ def score_stepped_terms(
         states,
         tilting,
         low_pass,
-        _COARSE if low_pass is None else _longest_step(models, values),
+        min(_COARSE, longest_step) if low_pass is None else _longest_step(models, values),
     )
     problem = _problem(objective, known, values)
     names, priors = problem.priors.coordinates.names, problem.priors

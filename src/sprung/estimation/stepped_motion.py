@@ -24,6 +24,9 @@ Real = NDArray[np.float64]
 _NEAR = 1e-3
 """Part of the corner by which readings are differentiated: the error is of second order."""
 
+_UNBOUNDED = 1e12
+"""Residual sum of squares, as a part of the records' own, of a motion without bounds: its derivatives soon are no numbers."""
+
 _FIRST_WINDOW, _WINDOWS = 0.05, 8
 """Length of the first window of time, s, and how many there are, each twice as long as the one before."""
 
@@ -174,7 +177,7 @@ class SteppedMotion:
         """Residual sums of squares, (m/s²)², shape (drop, channel); infinite where the motion has no bounds."""
         with np.errstate(over="ignore", invalid="ignore"):
             sums = self.objective.channel_weights * np.einsum("dct,dct->dc", self.residuals, self.residuals)
-        return np.where(np.isfinite(sums), sums, np.inf)
+        return np.where(sums < _UNBOUNDED * self.objective.energy.max(), sums, np.inf)
 
     @cached_property
     def products(self) -> Real:

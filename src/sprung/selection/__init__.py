@@ -10,8 +10,8 @@ from sprung.selection.contact import begin_no_later, final_tolerance, from_conta
 from sprung.selection.description import TermDescription, describe_terms
 from sprung.selection.error_budget import FALSE_ALARM_SHARE, required_gain
 from sprung.selection.finite_rotation import select_finite_rotation
-from sprung.selection.from_ordinary_vehicle import select_flexible_body
-from sprung.selection.linear_terms import ENGINE, SEPARATE_TRACKS, STARTED_LATER
+from sprung.selection.from_ordinary_vehicle import fit_flexible_bodies, select_flexible_body
+from sprung.selection.linear_terms import ENGINE, FLEXIBLE_BODIES, SEPARATE_TRACKS, STARTED_LATER
 from sprung.selection.low_pass import confirm_low_pass, corner_of, select_low_pass
 from sprung.selection.model_term import ModelTerm
 from sprung.selection.nonlinear import select_nonlinear_terms
@@ -32,6 +32,7 @@ from sprung.selection.terms import TERMS
 __all__ = [
     "ENGINE",
     "FALSE_ALARM_SHARE",
+    "FLEXIBLE_BODIES",
     "SEPARATE_TRACKS",
     "STARTED_LATER",
     "TERMS",
@@ -47,6 +48,7 @@ __all__ = [
     "corner_of",
     "describe_terms",
     "final_tolerance",
+    "fit_flexible_bodies",
     "fit_forced_terms",
     "fit_requested_terms",
     "fit_structure",

@@ -7,11 +7,13 @@ priors, so that a term of which the records say little keeps the size that it us
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 from sprung.progress import Step
+from sprung.selection.contact import from_contact
 from sprung.selection.error_budget import MISFIT_LEFT
-from sprung.selection.linear_terms import BENDING, TWIST
+from sprung.selection.linear_terms import FLEXIBLE_BODIES
 from sprung.selection.ordinary_vehicle import (
     ITERATIONS,
     fit_from_ordinary_vehicle,
@@ -42,8 +44,33 @@ def select_flexible_body(search: ModelSearch) -> ModelSearch:
     """
     if not search.is_misfit_large:
         return search
+    for term, tried in fit_flexible_bodies(search, FLEXIBLE_BODIES).items():
+        gain = tried.gain_over(search)
+        if search.leaves_misfit(tried.fit, MISFIT_LEFT) or tried.veto(term) or gain < search.required(term):
+            search = search.recorded({term: gain}, True, False, "an ordinary vehicle with it explains no more")
+        else:
+            # A rigid body did not show where a wheel last touched: samples before that would accept any further term.
+            return from_contact(replace(tried, steps=search.steps).recorded({term: gain}, True, True))
+    return search
+
+
+def fit_flexible_bodies(search: ModelSearch, terms: Sequence[str]) -> dict[str, ModelSearch]:
+    """Fit a body that twists, or one that bends, from an ordinary vehicle that has it.
+
+    Parameters
+    ----------
+    search
+        The present model and its fit, linear.
+    terms
+        Which of them.
+
+    Returns
+    -------
+    dict
+        By term, the likeliest first.
+    """
     found: dict[str, ModelSearch] = {}
-    for term in search.open_terms((TWIST, BENDING)):
+    for term in search.open_terms(terms):
         search.progress(Step(f"fitting an ordinary vehicle with {term}"))
         larger = search.with_terms([term])
         ends = [
@@ -51,13 +78,7 @@ def select_flexible_body(search: ModelSearch) -> ModelSearch:
             for variant in start_variants(term, larger, search.fit.parameters)
         ]
         found[term] = max(ends, key=lambda end: end.fit.loglikelihood)
-    for term, tried in sorted(found.items(), key=lambda item: -item[1].fit.loglikelihood):
-        gain = tried.gain_over(search)
-        if search.leaves_misfit(tried.fit, MISFIT_LEFT) or tried.veto(term) or gain < search.required(term):
-            search = search.recorded({term: gain}, True, False, "an ordinary vehicle with it explains no more")
-        else:
-            return replace(tried, steps=search.steps).recorded({term: gain}, True, True)
-    return search
+    return dict(sorted(found.items(), key=lambda item: -item[1].fit.loglikelihood))
 
 
 def select_from_ordinary_vehicle(search: ModelSearch, plain: ModelStructure) -> ModelSearch:
@@ -79,7 +100,7 @@ def select_from_ordinary_vehicle(search: ModelSearch, plain: ModelStructure) -> 
     if not terms:
         return search
     search.progress(Step("fitting an ordinary vehicle with every usual term"))
-    flexible = tuple(name for name in search.selected if name in (TWIST, BENDING))
+    flexible = tuple(name for name in search.selected if name in FLEXIBLE_BODIES)
     found = fit_usual_terms(search, plain.with_terms((*plain.terms, *flexible, *terms)))
     if found is None or search.leaves_misfit(found.fit, MISFIT_LEFT):
         against = "together they do not explain what the model so far leaves"

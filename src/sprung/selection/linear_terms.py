@@ -28,6 +28,9 @@ ENGINE, OCCUPANTS, TWIST, BENDING = "engine", "occupants", "twist", "bending"
 DAMPER_MOUNT = "damper-mount"
 """Rubber in series with the dampers."""
 
+FLEXIBLE_BODIES = TWIST, BENDING
+"""Bodies that are not rigid."""
+
 INTERCONNECTION = "interconnection"
 """Left and right connected by a fluid line."""
 

@@ -8,16 +8,24 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from functools import partial
 
 from sprung.progress import Step
-from sprung.selection.contact import is_likelier
-from sprung.selection.from_ordinary_vehicle import select_from_ordinary_vehicle
-from sprung.selection.linear_terms import ENGINE
+from sprung.selection.contact import from_contact, is_likelier
+from sprung.selection.error_budget import MISFIT_LEFT, MISFIT_LEFT_AT_FIRST
+from sprung.selection.from_ordinary_vehicle import fit_flexible_bodies, select_from_ordinary_vehicle
+from sprung.selection.linear_terms import FLEXIBLE_BODIES
 from sprung.selection.scoring import score_terms
 from sprung.selection.search import ModelSearch
-from sprung.selection.stepwise import rank_terms, select_terms_beside, try_likeliest
+from sprung.selection.stepwise import (
+    rank_terms,
+    select_further_terms,
+    select_terms_beside,
+    select_terms_in_whole,
+    try_likeliest,
+)
 from sprung.selection.structure import ModelStructure
-from sprung.selection.term_fits import fit_term, select_gravity_leakage
+from sprung.selection.term_fits import begin_nonlinear_fit, fit_term, select_gravity_leakage
 from sprung.selection.terms import TERMS
 
 _TRIED_FIRST = 3
@@ -49,7 +57,7 @@ def select_nonlinear_terms(search: ModelSearch, plain: ModelStructure) -> ModelS
     search, scores = score_terms(search, terms)
     search, ranked = rank_terms(search, scores, 1.0)
     best, steps = search, search.steps
-    for select in _searches(search, plain, ranked[:_TRIED_FIRST]):
+    for select in _searches(search, plain, terms, ranked[:_TRIED_FIRST]):
         found = select(replace(search, steps=steps))
         steps = found.steps
         best = found if is_likelier(found, best) else best
@@ -64,7 +72,9 @@ def select_nonlinear_terms(search: ModelSearch, plain: ModelStructure) -> ModelS
     return select_gravity_leakage(best)
 
 
-def _searches(search: ModelSearch, plain: ModelStructure, ranked: Sequence[str]) -> Iterator[SearchFromBase]:
+def _searches(
+    search: ModelSearch, plain: ModelStructure, terms: Sequence[str], ranked: Sequence[str]
+) -> Iterator[SearchFromBase]:
     """Yield the searches from every base, the simplest first."""
     found = search.structure
     plain = replace(
@@ -73,22 +83,83 @@ def _searches(search: ModelSearch, plain: ModelStructure, ranked: Sequence[str])
     is_plain = plain.names == search.structure.names
     simplest = search if is_plain else search.refit(plain)
     if ranked:
-        yield lambda so_far: _from_base(replace(simplest, steps=so_far.steps), ranked)
+        yield partial(_from_base, simplest, ranked)
     if search.is_misfit_large:
-        yield lambda so_far: select_from_ordinary_vehicle(so_far, plain)
+        yield partial(_with_usual_terms, search, plain)
     if ranked and not is_plain:
-        yield lambda so_far: _from_base(so_far, ranked)
-    gains = [step.gain > step.asked for step in search.steps if step.extra == ENGINE and step.fitted and not step.taken]
-    if ranked and any(gains):
-        yield lambda so_far: _from_base(fit_term(replace(simplest, steps=so_far.steps), ENGINE), ranked)
+        yield partial(_from_base, search, ranked)
     # A linear fit that has gone astray for the sake of friction, small motions' friction above all, shows no score of it.
     hidden = [term for term in search.open_terms(tuple(TERMS)) if TERMS[term].resembles_others and term not in ranked]
-    if search.is_misfit_large and hidden:
-        yield lambda so_far: _from_base(replace(simplest, steps=so_far.steps), hidden)
+    bases = [simplest] if is_plain else [search, simplest]
+    for base in bases if search.is_misfit_large and hidden else ():
+        yield partial(_from_base, base, hidden)
+    flexible = [term for term in FLEXIBLE_BODIES if term in _refused_parts(search)]
+    for body in fit_flexible_bodies(simplest, flexible).values() if search.is_misfit_large else ():
+        yield partial(_with_usual_terms, body, plain)
+    if search.is_misfit_large or _refused_parts(search):
+        yield partial(_from_likeliest_beginning, bases, terms)
 
 
-def _from_base(base: ModelSearch, terms: Sequence[str]) -> ModelSearch:
+def _with_usual_terms(base: ModelSearch, plain: ModelStructure, so_far: ModelSearch) -> ModelSearch:
+    """Add every usual term, to a body that is not rigid as well if the base has one, and leave out what is not needed."""
+    return select_from_ordinary_vehicle(replace(base, steps=so_far.steps), plain)
+
+
+def _refused_parts(search: ModelSearch) -> list[str]:
+    """Return the parts that vibrate by themselves and gained much, but were refused."""
+    refused = {step.extra for step in search.steps if step.fitted and not step.taken and step.gain > step.asked}
+    return [term for term in search.open_terms([*refused]) if TERMS[term].explains_all and TERMS[term].adds_coordinates]
+
+
+def _with_refused_parts(search: ModelSearch) -> list[ModelSearch]:
+    """Fit each part that was refused, beside nothing.
+
+    Springs that are no springs hide a body that is not rigid or people on its seats, and these hide them: neither explains
+    alone what both of them leave.
+    """
+    parts = _refused_parts(search)
+    flexible = [term for term in FLEXIBLE_BODIES if term in parts]
+    found = fit_flexible_bodies(search, flexible)
+    found |= {term: fit_term(search, term) for term in parts if term not in flexible}
+    return [base for term, base in found.items() if not TERMS[term].is_something_else(base.fit.parameters)]
+
+
+def _from_likeliest_beginning(bases: Sequence[ModelSearch], terms: Sequence[str], so_far: ModelSearch) -> ModelSearch:
+    """Go on from the part and the nonlinear term that explain most together, though they may leave much to further terms.
+
+    Only the beginnings of the decays are fitted until these explain the misfit.
+    """
+    search = replace(bases[0], steps=so_far.steps)
+    ranked: list[tuple[ModelSearch, list[str]]] = []
+    for base in (*bases, *_with_refused_parts(replace(bases[-1], steps=so_far.steps))):
+        scored, scores = score_terms(base, terms)
+        _, promising = rank_terms(scored, scores, 1.0)
+        ranked += [(scored, promising)] if promising else []
+    if not ranked:
+        return search
+    # What part there is makes more of a difference than which law a spring or damper has.
+    first = [(_begin(base, promising[0]), base, promising[1:_TRIED_FIRST]) for base, promising in ranked]
+    likeliest, base, others = max(first, key=lambda one: one[0].fit.loglikelihood)
+    best = max([likeliest, *(_begin(base, term) for term in others)], key=lambda one: one.fit.loglikelihood)
+    if search.leaves_misfit(best.fit, MISFIT_LEFT_AT_FIRST):
+        return search
+    early = replace(best, steps=search.steps, decays=best.fit.decays)
+    found = select_further_terms(from_contact(early, on_the_way=True), whole=False)
+    if search.leaves_misfit(found.fit, MISFIT_LEFT):
+        return replace(search, steps=found.steps)
+    found = found.recorded({term: found.wald_gain(term) for term in found.selected}, True, True)
+    return select_terms_in_whole(found, search.decays)
+
+
+def _begin(search: ModelSearch, term: str) -> ModelSearch:
+    """Return the search with a term whose fit has begun."""
+    larger = search.with_terms([term])
+    return replace(search, structure=larger, fit=begin_nonlinear_fit(search, larger))
+
+
+def _from_base(base: ModelSearch, terms: Sequence[str], so_far: ModelSearch) -> ModelSearch:
     """Add the likeliest of some nonlinear terms, and further ones beside it."""
+    base = replace(base, steps=so_far.steps)
     found = try_likeliest(base, terms)
     if found.structure.names == base.structure.names:
         return found

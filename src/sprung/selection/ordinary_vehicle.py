@@ -11,7 +11,7 @@ from dataclasses import replace
 
 from sprung.estimation import NEAR, UsualValue, VehicleSize, fit_linear, usual_vehicle
 from sprung.selection.error_budget import MISFIT_LEFT_AT_FIRST
-from sprung.selection.linear_terms import BENDING, TWIST
+from sprung.selection.linear_terms import FLEXIBLE_BODIES
 from sprung.selection.search import ModelSearch
 from sprung.selection.starts import start_values
 from sprung.selection.structure import ModelStructure
@@ -188,7 +188,7 @@ def fit_usual_terms(search: ModelSearch, rich: ModelStructure) -> ModelSearch | 
     """
     values, usual = ordinary_vehicle(rich)
     # No size is usual for a body that is flexible: it is as the present fit has it.
-    of_body = [name for term in (TWIST, BENDING) for name in TERMS[term].parameters(rich.tracks, rich.layout)]
+    of_body = [name for term in FLEXIBLE_BODIES for name in TERMS[term].parameters(rich.tracks, rich.layout)]
     values |= {name: search.fit.parameters[name] for name in of_body if name in search.fit.names and name in rich.names}
     at_start = fit_linear(
         search.decays, rich.linear_models, rich.sensors, rich.known, start=values, usual=usual, most=0

@@ -39,6 +39,9 @@ _RATE, _DURATION = 250.0, 3.0
 _BEHIND_LOW_PASS = 1.0
 """s of the decays likewise, where all samples count."""
 
+_SAMPLE = 1.005
+"""Of the recordings' samples: the longest step of a score, rounding aside."""
+
 Scores = dict[str, tuple[float, float]]
 """By term: the expected gain in twice the log-likelihood, and the expected size."""
 
@@ -184,6 +187,7 @@ def _score_together(search: ModelSearch, decays: Sequence[FreeDecay], terms: Seq
         candidates={
             term: [(name,) for name in TERMS[term].parameters(largest.tracks, largest.layout)] for term in terms
         },
+        longest_step=_SAMPLE / min(decay.rate for decay in search.decays),
         tilting=search.structure.gravity_leakage,
         low_pass=search.structure.low_pass,
     )

@@ -395,6 +395,7 @@ class ModelSearch:
 def _mean_squares(residuals: Real) -> Real:
     """Return the mean square of each channel over the samples that are numbers, shape (channel,); NaN where none is."""
     is_number = ~np.isnan(residuals)
-    sums, counts = np.sum(np.where(is_number, residuals, 0.0) ** 2, axis=1), is_number.sum(axis=1)
+    with np.errstate(over="ignore"):  # of a motion without bounds
+        sums, counts = np.sum(np.where(is_number, residuals, 0.0) ** 2, axis=1), is_number.sum(axis=1)
     means: Real = np.divide(sums, counts, out=np.full(len(sums), np.nan), where=counts > 0)
     return means

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from sprung.estimation import FitResult, engine_mountings, fit_linear, fit_nonlinear
 from sprung.preprocess import FreeDecay
 from sprung.progress import Progress
-from sprung.selection.linear_terms import BENDING, ENGINE, OCCUPANTS, TWIST
+from sprung.selection.linear_terms import ENGINE, FLEXIBLE_BODIES, OCCUPANTS
 from sprung.selection.structure import ModelStructure
 from sprung.selection.terms import TERMS
 from sprung.vehicle import (
@@ -179,7 +179,7 @@ def usual_variants(term: str, structure: ModelStructure, own: Mapping[str, float
 
     A body may bend at several frequencies, and people sit at several places.
     """
-    if term in (TWIST, BENDING):
+    if term in FLEXIBLE_BODIES:
         return [replace(structure, body_frequency=frequency) for frequency in _BODY_FREQUENCIES]
     if term == OCCUPANTS:
         return [replace(structure, seat_place=place) for place in _SEAT_PLACES]

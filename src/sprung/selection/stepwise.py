@@ -11,6 +11,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import replace
 
 from sprung.estimation import FitResult, beginning_of
+from sprung.preprocess import FreeDecay
 from sprung.selection.backward_elimination import counterpart_of, leave_out_unneeded
 from sprung.selection.contact import from_contact
 from sprung.selection.error_budget import MISFIT_LEFT_BY_ALL
@@ -92,15 +93,31 @@ def select_terms_beside(search: ModelSearch) -> ModelSearch:
     """
     beginnings = [beginning_of(decay) for decay in search.decays]
     early = from_contact(replace(search, decays=beginnings), on_the_way=True)
-    early = _select_further_terms(early, whole=False)
+    return select_terms_in_whole(select_further_terms(early, whole=False), search.decays)
+
+
+def select_terms_in_whole(early: ModelSearch, decays: Sequence[FreeDecay]) -> ModelSearch:
+    """Return the search after terms and a low-pass have been tried in whole decays, once their beginnings have decided.
+
+    Parameters
+    ----------
+    early
+        A nonlinear model and its fit to the beginnings.
+    decays
+        As they began before that.
+
+    Returns
+    -------
+    ModelSearch
+    """
     whole = [
         decay.shifted(round((beginning.start - decay.start) * decay.rate))
-        for decay, beginning in zip(search.decays, early.decays, strict=True)
+        for decay, beginning in zip(decays, early.decays, strict=True)
     ]
-    return _select_further_terms(from_contact(replace(early, decays=whole), on_the_way=True), whole=True)
+    return select_further_terms(from_contact(replace(early, decays=whole), on_the_way=True), whole=True)
 
 
-def _select_further_terms(search: ModelSearch, whole: bool) -> ModelSearch:
+def select_further_terms(search: ModelSearch, whole: bool) -> ModelSearch:
     """Try terms and a low-pass round after round, until none is accepted.
 
     Parameters
@@ -109,6 +126,10 @@ def _select_further_terms(search: ModelSearch, whole: bool) -> ModelSearch:
         The present model and its fit.
     whole
         Whether the beginnings of the decays have decided already: where they leave no misfit, only scores are looked at.
+
+    Returns
+    -------
+    ModelSearch
     """
     tried: frozenset[str] = frozenset()
     for _ in range(_FURTHER_ROUNDS):
