@@ -14,6 +14,9 @@ from scipy.signal import butter, lfilter, lfilter_zi
 FILTER_ORDER, CORNER = 4, 100.0
 """Of the loggers' Butterworth filter, Hz."""
 
+_NEAR = 1e-4
+"""m between two points of the body that show how it is inclined."""
+
 
 @dataclass(frozen=True)
 class RealSensor:
@@ -61,11 +64,13 @@ class RealSensor:
         along = np.sqrt(1 - self.tilt[0] ** 2 - self.tilt[1] ** 2)
         if self.on != "body":
             return np.asarray(self.gain * along * (acceleration[4 + STATIONS.index(self.on)] + GRAVITY))
-        where = points(car, [self.x + self.misplaced[0]], [self.y + self.misplaced[1]])[0]
+        x, y = self.x + self.misplaced[0], self.y + self.misplaced[1]
+        where, ahead, beside = points(car, [x, x + _NEAR, x], [y, y, y + _NEAR])
         (pitch, roll), above = motion.angles[row], self.z - cg_height
-        # The body's own axes turn with it: gravity shows forward when the nose is up, and to the left when the left is.
-        forward = -GRAVITY * pitch + above * acceleration[1]
-        left = GRAVITY * roll - above * acceleration[2]
+        # The body's own axes turn with it: gravity shows forward when the nose is up, and to the left when the left is. What
+        # is above the middle moves back where the body rises ahead, as it pitches, and as it bends or twists there.
+        forward = -GRAVITY * pitch - above * (ahead - where) @ acceleration / _NEAR
+        left = GRAVITY * roll - above * (beside - where) @ acceleration / _NEAR
         up = where @ acceleration + GRAVITY
         return np.asarray(self.gain * (along * up + self.tilt[0] * forward + self.tilt[1] * left))
 
