@@ -62,8 +62,8 @@ class ModelTerm:
     separates_tracks
         Whether it is that dampers and springs have half-distances of their own: where it is absent they are equal.
     character
-        What tells it from other things that move alike: a natural frequency, Hz, or relaxation times, s; None where nothing
-        does.
+        What tells it from other things that move alike: a natural frequency, Hz, relaxation times, s, or velocities of knees,
+        m/s; None where nothing does.
     band
         Lowest and highest value that its character has.
     counterpart
@@ -147,7 +147,7 @@ class ModelTerm:
         return tuple(name for name, one in about.items() if not (one.positive or one.signed))
 
     def is_something_else(self, values: Values) -> bool:
-        """Whether a part vibrates or relaxes as none of its kind does.
+        """Whether a part vibrates, relaxes or has its knee as none of its kind does.
 
         Parameters
         ----------

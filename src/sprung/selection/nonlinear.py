@@ -61,7 +61,7 @@ def select_nonlinear_terms(search: ModelSearch, plain: ModelStructure) -> ModelS
         found = select(replace(search, steps=steps))
         steps = found.steps
         best = found if is_likelier(found, best) else best
-        if best.structure.is_nonlinear and not best.is_misfit_large:
+        if best.structure.is_nonlinear and not best.lacks_something:
             break
     if not best.structure.is_nonlinear:
         return replace(search, steps=steps)

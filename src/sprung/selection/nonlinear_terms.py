@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from sprung.selection.description import TermDescription, Values
 from sprung.selection.model_term import ModelTerm, axles_of, of_axles
 from sprung.selection.structure import ModelStructure
@@ -27,6 +29,9 @@ _AIR_GROWTH = 2.3
 _KNEE, _KNEE_LOSS, _ROUNDING = 0.12, 0.5, 0.3
 """m/s at which the curve of a damper usually has its knee, the part of its slope that it usually loses there, and half the
 width of its rounding as a part of the velocity."""
+
+_SLOWEST_KNEE = 0.01
+"""m/s: a knee at a lower velocity is the force of a friction."""
 
 _NEXT_KNEE = 2.5
 """Velocity of a further knee over that of the one before, at the start of a fit."""
@@ -163,6 +168,9 @@ NONLINEAR_TERMS = (
             neutral=1.0,
         ),
         undefined=lambda own, _: {f"v_k{axle}": _KNEE for axle in axles_of(own)},
+        character=lambda p: [p[f"v_k{axle}"] for axle in axles_of(p)],
+        band=(_SLOWEST_KNEE, np.inf),
+        counterpart="friction",
     ),
     ModelTerm(
         "rebound-knee",

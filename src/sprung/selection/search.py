@@ -257,6 +257,11 @@ class ModelSearch:
         return self.overdispersion > OVERDISPERSED
 
     @property
+    def lacks_something(self) -> bool:
+        """Whether what is left is no noise, and more than the sensors' own."""
+        return self.is_overdispersed and self.has_model_error
+
+    @property
     def is_misfit_small(self) -> bool:
         """Whether what is left is no noise and yet small: any further term would seem to explain some of it."""
         return self.is_overdispersed and not self.has_model_error
@@ -339,7 +344,7 @@ class ModelSearch:
         if undetermined:
             return f"the recordings do not determine {', '.join(undetermined)}"
         if row.is_something_else(parameters):
-            return "nothing of its kind vibrates or relaxes like that"
+            return "no part of its kind vibrates, relaxes or has a knee like that"
         size = abs(row.size(parameters))
         if size < row.negligible:
             return f"its effect of {100 * size:.2g} % is negligible"

@@ -114,7 +114,9 @@ def select_terms_in_whole(early: ModelSearch, decays: Sequence[FreeDecay]) -> Mo
         decay.shifted(round((beginning.start - decay.start) * decay.rate))
         for decay, beginning in zip(decays, early.decays, strict=True)
     ]
-    return select_further_terms(from_contact(replace(early, decays=whole), on_the_way=True), whole=True)
+    search = from_contact(replace(early, decays=whole), on_the_way=True)
+    # What leaves so much is not the vehicle: another base may lead to it, and further terms beside this one would be slow.
+    return search if early.lacks_something else select_further_terms(search, whole=True)
 
 
 def select_further_terms(search: ModelSearch, whole: bool) -> ModelSearch:
