@@ -109,6 +109,11 @@ class ModelTerm:
         """Whether a vehicle with it moves in more coordinates than the paper's."""
         return len(coordinates(self.parameters("shared"))) > len(COORDINATES)
 
+    @property
+    def vibrates_by_itself(self) -> bool:
+        """Whether it is a part with a natural frequency of its own, at a place that no score shows while it is nothing."""
+        return self.explains_all and self.adds_coordinates
+
     def parameters(self, tracks: Tracks, layout: Layout = FULL) -> tuple[str, ...]:
         """Return the parameters that a model with the term has and one without it has not, or not free.
 

@@ -108,7 +108,7 @@ def _with_usual_terms(base: ModelSearch, plain: ModelStructure, so_far: ModelSea
 def _refused_parts(search: ModelSearch) -> list[str]:
     """Return the parts that vibrate by themselves and gained much, but were refused."""
     refused = {step.extra for step in search.steps if step.fitted and not step.taken and step.gain > step.asked}
-    return [term for term in search.open_terms([*refused]) if TERMS[term].explains_all and TERMS[term].adds_coordinates]
+    return [term for term in search.open_terms([*refused]) if TERMS[term].vibrates_by_itself]
 
 
 def _with_refused_parts(search: ModelSearch) -> list[ModelSearch]:

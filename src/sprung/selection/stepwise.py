@@ -148,10 +148,7 @@ def select_further_terms(search: ModelSearch, whole: bool) -> ModelSearch:
             if search.structure is before.structure and not search.is_overdispersed:
                 break
         if search.structure is before.structure:
-            # What the likeliest of them beats may be needed beside it: it is tried again in the next round.
-            search = _accept_rival(search, _rivals(_untried(search, tried)))
-        if search.structure is before.structure:
-            search = _accept_rival(search, _hidden(_untried(search, tried)))
+            search = _accept_unscored(search, tried, with_parts=not whole and search.lacks_something)
         if _hidden(search.structure.terms) != _hidden(before.structure.terms):
             # What was refused without it may be needed beside it.
             tried = frozenset()
@@ -191,6 +188,17 @@ def _accept_rival(search: ModelSearch, terms: Sequence[str]) -> ModelSearch:
     return found if found.structure is search.structure else confirm_low_pass(found)
 
 
+def _accept_unscored(search: ModelSearch, tried: Collection[str], with_parts: bool) -> ModelSearch:
+    """Accept what no score shows: a term among those that refine the same, a friction, or a part that vibrates by itself."""
+    # What the likeliest of each kind beats may be needed beside it: it is tried again in the next round.
+    for kind in (_rivals, _hidden, *([_parts] if with_parts else [])):
+        found = _accept_rival(search, kind(_untried(search, tried)))
+        if found.structure is not search.structure:
+            return found
+        search = found
+    return search
+
+
 def _accept_low_pass(search: ModelSearch, *rivals: Sequence[str]) -> ModelSearch:
     """Accept a low-pass of the loggers if the recordings support one, unless terms that show in no score explain more.
 
@@ -206,6 +214,11 @@ def _accept_low_pass(search: ModelSearch, *rivals: Sequence[str]) -> ModelSearch
 def _hidden(terms: Sequence[str]) -> list[str]:
     """Return the terms that show in no score once a fit of everything at once has lost them, but when the rest is right."""
     return [term for term in terms if TERMS[term].resembles_others]
+
+
+def _parts(terms: Sequence[str]) -> list[str]:
+    """Return the terms that are parts which vibrate by themselves: where they are nothing no score tells their place."""
+    return [term for term in terms if TERMS[term].vibrates_by_itself]
 
 
 def _laws_of_part(term: str, terms: Sequence[str]) -> list[str]:

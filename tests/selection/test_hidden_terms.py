@@ -1,0 +1,50 @@
+"""Terms that hide each other: none shows, or explains much, while another one is missing."""
+
+from __future__ import annotations
+
+import pytest
+
+import sprung
+from selection.test_refined_terms import BALLAST
+from sprung.selection.terms import TERMS
+from sprung.vehicle import TABLE_1_CAR, Vehicle
+
+TWIST = {"I_w": 60.0, "k_w": 60.0 * (2 * 3.1416 * 17.0) ** 2, "c_w": 250.0, "a_w": 0.1, "u_w": 0.0, "e_w": 0.0}
+"""A body that twists at 17 Hz."""
+
+AIR = {"e_f": 4.4, "e_r": 4.6}
+"""Air springs, by the height of their columns."""
+
+PEOPLE = {"m_o": 140.0, "k_o": 140.0 * (2 * 3.1416 * 4.4) ** 2, "c_o": 2200.0, "x_o": -1.4, "y_o": 0.0, "t_o": 0.4}
+"""Two people on their seats."""
+
+CURVE = {"r_f": 1.8, "r_r": 1.8, "v_kf": 0.08, "v_kr": 0.08, "q_f": 0.5, "q_r": 0.5}
+"""Dampers with a knee, harder in rebound."""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("first", "second"),
+    [(TWIST, AIR), (PEOPLE, CURVE)],
+    ids=["twist behind air springs", "people behind damper curves"],
+)
+def test_both_of_two_effects_are_found(first: dict[str, float], second: dict[str, float]) -> None:
+    car = Vehicle.from_parameters(TABLE_1_CAR.parameters | first | second)
+    known = {"total_mass": car.total_mass}
+    result = sprung.identify(sprung.simulate(car, loads=[BALLAST], rate=500.0, noise=0.02, seed=2, known=known))
+    assert result.verdict.state == "accept"
+    assert not result.faults
+    assert {*car.extras} <= {*result.fit.model}
+    for name in TABLE_1_CAR.parameters:
+        found = result.parameters[name]
+        assert found.std is not None
+        assert found.value == pytest.approx(car.parameters[name], abs=4 * found.std), name
+
+
+def test_a_knee_at_no_velocity_is_a_friction() -> None:
+    """Dampers of buses have their knees at 0.05 m/s and more; a force that reverses within millimetres a second rubs."""
+    curve = TERMS["damper-curve"]
+    values = dict(TABLE_1_CAR.parameters) | {"q_f": 0.5, "q_r": 0.5, "v_kf": 0.05}
+    assert not curve.is_something_else(values | {"v_kr": 0.05})
+    assert curve.is_something_else(values | {"v_kr": 0.001})
+    assert curve.counterpart == "friction"
