@@ -175,10 +175,11 @@ Each campaign: ten drops from 5 cm (buses 7 cm), five with ballast; {RATE:g} sam
 *Seats* are two people side by side, each with a weight and a seat of his own. *Tall* cars have anti-roll bars and a centre of
 gravity 0.75 to 1 m high, of which the campaign file says nothing. *Usual* is everything at once that every car has: mount,
 curve, rubber, tyre, dry friction, sensors as they are; those are tilted and misplaced, have errors of gain, and loggers with
-a low-pass. *Median error* is that of the worst parameter of each campaign, among the fifteen of the plain vehicle; *worst*
-the largest of all. *Covered*: 95 % intervals of all parameters that contain the true value. Errors do not include rejected
-campaigns, of which no parameters are stated. The damper curve is compared from {SLOWEST:g} m/s to the largest velocity in the
-decays.
+a low-pass. *Two effects* go through the 35 pairs of mount, knee, Zener, tyre, friction, twist, bending, air and seats, with
+sensors that are tilted and misplaced and have errors of gain. *Median error* is that of the worst parameter of each campaign,
+among the fifteen of the plain vehicle; *worst* the largest of all. *Covered*: 95 % intervals of all parameters that contain
+the true value. Errors do not include rejected campaigns, of which no parameters are stated. The damper curve is compared from
+{SLOWEST:g} m/s to the largest velocity in the decays.
 
 ## Results
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from itertools import combinations
 from types import MappingProxyType
 from typing import Any
 from zlib import crc32
@@ -250,10 +251,26 @@ KINDS: Mapping[str, tuple[tuple[Add, ...], tuple[str, ...]]] = MappingProxyType(
         "sensors": ((), ()),
         "usual": ((add_usual,), ("small car", "hatchback", "sedan", "SUV", "van")),
         "no roll drops": ((), ("hatchback", "sedan", "SUV")),
+        "two effects": ((), ()),
         "tall": ((), ("SUV", "van")),
     }
 )
 """What is added to which types of cars; all types where none is named."""
+
+EFFECTS: tuple[Add, ...] = (
+    add_mount,
+    add_knee,
+    add_zener,
+    add_tyre,
+    add_friction,
+    add_twist,
+    add_bending,
+    add_air,
+    add_people,
+)
+
+PAIRS = tuple(pair for pair in combinations(EFFECTS, 2) if pair != (add_twist, add_bending))
+"""Two effects at once: 35 pairs, one after the other. A body twists or bends."""
 
 NO_VEHICLE = ("play", "slapping sensor", "two vehicles")
 """What no vehicle is."""
@@ -263,12 +280,15 @@ def draw_test(kind: str, seed: int) -> RealTest:
     """Draw a car of a kind, its load and its sensors."""
     draw = Draw(kind, seed)
     adds, types = KINDS.get(kind, ((add_play,) if kind == "play" else (), ()))
+    if kind == "two effects":
+        adds = PAIRS[seed % len(PAIRS)]
+        types = _LONG if {*adds} & {add_twist, add_bending, add_air} else ()
     car = draw.car(types)
     for add in adds:
         car = add(car, draw)
     bus = car.name == "bus"
     sensors = sensors_of(car, height=0.9 if bus else 0.55)
-    if kind in ("sensors", "usual"):
+    if kind in ("sensors", "usual", "two effects"):
         sensors = tuple(_as_it_is(one, draw) for one in sensors)
     drops = tuple((loaded, wheels) for loaded in (False, True) for wheels in FIVE)
     if kind == "no roll drops":

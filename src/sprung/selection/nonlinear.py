@@ -60,16 +60,18 @@ def select_nonlinear_terms(search: ModelSearch, plain: ModelStructure) -> ModelS
     for select in _searches(search, plain, terms, ranked[:_TRIED_FIRST]):
         found = select(replace(search, steps=steps))
         steps = found.steps
-        best = found if is_likelier(found, best) else best
-        if best.structure.is_nonlinear and not best.lacks_something:
+        # On the way through nonlinear terms linear ones may show that explain everything without them.
+        is_result = found.structure.is_nonlinear or not found.lacks_something
+        best = found if is_result and is_likelier(found, best) else best
+        if best is not search and not best.lacks_something:
             break
-    if not best.structure.is_nonlinear:
+    if best is search:
         return replace(search, steps=steps)
-    beside = ", ".join(term for term in best.selected if not TERMS[term].is_linear)
+    beside = ", ".join(term for term in best.selected if not TERMS[term].is_linear or term not in search.selected)
     gains = {step.extra: step.gain for step in search.steps if step.taken}
     gone = {term: gains[term] for term in search.selected if term not in best.selected}
     best = replace(best, steps=steps).recorded(gone, True, False, f"it is not needed beside {beside}")
-    return select_gravity_leakage(best)
+    return select_gravity_leakage(best) if best.structure.is_nonlinear else best
 
 
 def _searches(
