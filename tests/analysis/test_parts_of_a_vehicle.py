@@ -24,7 +24,6 @@ WITH_TERMS = (
 )
 WITH_CURVES = (
     QUARTER.with_values(F=25.0, s=2e5, r=1.6),
-    QUARTER.with_values(F=25.0, s=2e5, k_d=2.4e5),
     ROLL_PLANE.with_values(v_k=0.12, q=0.5),
     ROLL_PLANE.with_values(F=60.0, s=2e5, d_F=25.0),
 )
