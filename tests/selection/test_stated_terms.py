@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import pytest
@@ -29,11 +30,10 @@ def sensors() -> list[Sensor]:
     return [*on_body, *(Sensor(channel=f"wheel_{side}", on=side, **exact) for side in ("left", "right"))]  # type: ignore[arg-type]
 
 
-def test_a_fit_comes_back_from_wheels_heavier_than_the_body() -> None:
-    """Begun where mass has moved from the body to the wheels, it ends at the rig's; straight from there at some 475 kg."""
-    known: dict[str, float | KnownValue] = {"m_s": 433.0, "t": 0.75, "m_u": KnownValue(80.0, 40.0)}
+def baseline_of(rig: Vehicle, known: Mapping[str, float | KnownValue], terms: tuple[str, ...]) -> Analysis:
+    """Return the analysis of a rig that is let go from a rope at both ends, and at one, up to its first linear fit."""
     campaign = sprung.simulate(
-        RIG,
+        rig,
         sensors=sensors(),
         drops=BOTH_ENDS,
         push={"shape": "rope"},
@@ -43,7 +43,13 @@ def test_a_fit_comes_back_from_wheels_heavier_than_the_body() -> None:
         duration=2,
         rate=250,
     )
-    run = Analysis.start(campaign, AnalysisOptions(tracks="shared", terms=RIG.extras), STAGES[:3]).run()
+    return Analysis.start(campaign, AnalysisOptions(tracks="shared", terms=terms), STAGES[:3]).run()
+
+
+def test_a_fit_comes_back_from_wheels_heavier_than_the_body() -> None:
+    """Begun where mass has moved from the body to the wheels, it ends at the rig's; straight from there at some 475 kg."""
+    known: dict[str, float | KnownValue] = {"m_s": 433.0, "t": 0.75, "m_u": KnownValue(80.0, 40.0)}
+    run = baseline_of(RIG, known, terms=RIG.extras)
     linear, requested = run.model, run.requested
     assert requested is not None
     heavy = {**linear.structure.known, "m_u": KnownValue(600.0)}
@@ -59,18 +65,7 @@ def test_what_differs_between_the_sides_of_a_lost_friction_goes_with_it() -> Non
     """A vehicle without friction: without it nothing is stepped."""
     smooth = RIG.with_values(F=None, s=None, c_s=900.0)
     known: dict[str, float | KnownValue] = {"m_s": 433.0, "t": 0.75, "m_u": KnownValue(100.0, 5.0)}
-    campaign = sprung.simulate(
-        smooth,
-        sensors=sensors(),
-        drops=BOTH_ENDS,
-        push={"shape": "rope"},
-        known=known,
-        noise=2e-5,
-        seed=1,
-        duration=2,
-        rate=250,
-    )
-    run = Analysis.start(campaign, AnalysisOptions(tracks="shared", terms=()), STAGES[:3]).run()
+    run = baseline_of(smooth, known, terms=())
     rich = run.model.structure.with_terms(("friction", "uneven-friction"))
     found = fit_usual_terms(run.model, rich)
     assert found is not None

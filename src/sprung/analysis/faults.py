@@ -63,9 +63,11 @@ def isolate_evident_faults(run: Analysis, progress: Progress) -> Analysis:
     turned = select_finite_rotation(run, progress)
     if turned.fit is not run.fit:
         run = _with_isolated(turned, _consistency(turned), progress)
-    if _is_evident(run.found) and _is_less_likely_than_flexible_body(run.found[-1], run.model):
+    if not _is_evident(run.found):
+        return run
+    if _is_less_likely_than_flexible_body(run.found[-1], run.model):
         return run.noted("isolate_evident_faults", "nothing is corrected yet", "a body that is not rigid explains more")
-    return _corrected(run, run.found, "isolate_evident_faults") if _is_evident(run.found) else run
+    return _corrected(run, run.found, "isolate_evident_faults")
 
 
 def _is_less_likely_than_flexible_body(hypothesis: Hypothesis, search: ModelSearch) -> bool:

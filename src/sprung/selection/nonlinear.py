@@ -140,9 +140,9 @@ def _from_likeliest_beginning(bases: Sequence[ModelSearch], terms: Sequence[str]
     if not ranked:
         return search
     # What part there is makes more of a difference than which law a spring or damper has.
-    first = [(_begin(base, promising[0]), base, promising[1:_TRIED_FIRST]) for base, promising in ranked]
+    first = [(_with_first_steps(base, promising[0]), base, promising[1:_TRIED_FIRST]) for base, promising in ranked]
     likeliest, base, others = max(first, key=lambda one: one[0].fit.loglikelihood)
-    best = max([likeliest, *(_begin(base, term) for term in others)], key=lambda one: one.fit.loglikelihood)
+    best = max([likeliest, *(_with_first_steps(base, term) for term in others)], key=lambda one: one.fit.loglikelihood)
     if search.leaves_misfit(best.fit, MISFIT_LEFT_AT_FIRST):
         return search
     early = replace(best, steps=search.steps, decays=best.fit.decays)
@@ -153,8 +153,8 @@ def _from_likeliest_beginning(bases: Sequence[ModelSearch], terms: Sequence[str]
     return select_terms_in_whole(found, search.decays)
 
 
-def _begin(search: ModelSearch, term: str) -> ModelSearch:
-    """Return the search with a term whose fit has begun."""
+def _with_first_steps(search: ModelSearch, term: str) -> ModelSearch:
+    """Return the search with a term, after the first steps of its fit to the beginnings of the decays."""
     larger = search.with_terms([term])
     return replace(search, structure=larger, fit=begin_nonlinear_fit(search, larger))
 
