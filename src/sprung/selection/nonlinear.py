@@ -98,7 +98,7 @@ def _searches(
     flexible = [term for term in FLEXIBLE_BODIES if term in _refused_parts(search)]
     for body in fit_flexible_bodies(simplest, flexible).values() if search.is_misfit_large else ():
         yield partial(_with_usual_terms, body, plain)
-    if search.is_misfit_large or _refused_parts(search):
+    if search.is_misfit_large or (search.lacks_something and _refused_parts(search)):
         yield partial(_from_likeliest_beginning, bases, terms)
 
 
