@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
-from functools import cached_property, partial
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -211,60 +210,72 @@ class SteppedMotion:
         direct = [np.swapaxes(by_S, 0, 1) @ rows for rows in observed]
         for by_row, (_, slopes) in zip(direct, by_kind, strict=True):
             by_row[:shared] += objective.sensors.of_accelerations(S) @ slopes
+        of_same_motion = [np.ascontiguousarray(by_row.transpose(2, 1, 0)) for by_row in direct]
         if self._gravity is not None:
             # Sensors that turn measure the less of gravity: their readings depend on pitch and roll.
             units = np.eye(outputs.shape[2])[objective.angles]
             angles = np.broadcast_to(units, (len(outputs), *units.shape))
             outputs = np.concatenate([outputs, angles], axis=1)
         of_drop, starts, transitions = differentiate_motions(self.stepper, self.trajectory, outputs, objective.every)
-        products_of = partial(self._products_of_drop, self._inputs(objective.every), direct, of_drop)
+        at_samples = self._inputs(objective.every)
+        columns = len(self.values) + starts.shape[2] + 1
+        products = np.empty((_WINDOWS, *objective.channel_weights.shape, columns, columns))
+
+        def fill(drop: int) -> None:
+            """Fill in the products of one drop in each window."""
+            with np.errstate(over="ignore", invalid="ignore"):  # of this thread
+                same = of_same_motion[objective.kind[drop]]
+                derivatives = self._derivatives_of_drop(at_samples[:, drop], same, of_drop(drop), drop)
+                for window, own in zip(products, self._windows(derivatives, drop), strict=True):
+                    np.matmul(np.swapaxes(own, 1, 2), own, out=window[drop])
+
         # Each drop may have a processor of its own.
         with ThreadPoolExecutor(os.cpu_count()) as pool:
-            products = list(pool.map(products_of, range(len(objective.decays))))
-        by_window = np.swapaxes(np.array(products), 0, 1) * objective.channel_weights[:, :, None, None]
-        return by_window, starts, transitions
+            list(pool.map(fill, range(len(objective.decays))))
+        return products, starts, transitions
 
-    def _products_of_drop(
-        self, at_samples: Real, direct: Sequence[Real], of_drop: Callable[[int], Real], drop: int
-    ) -> list[Real]:
-        """Return the products of one drop in each window, shape (channel, unknown + 1, unknown + 1).
+    def _derivatives_of_drop(self, at_samples: Real, same: Real, moved: Real, drop: int) -> Real:
+        """Return how the readings of one drop follow the unknowns, shape (time, channel, unknown).
 
         Parameters
         ----------
         at_samples
-            {X, Ẋ, u, 1} at each sample, shape (time, drop, input).
-        direct
-            By kind of step, what each parameter changes in the readings of the same motion, shape (parameter, channel, input).
-        of_drop
-            What the unknowns change in the readings of a drop by its motion, from `differentiate_motions`.
+            {X, Ẋ, u, 1} at each sample, shape (time, input).
+        same
+            What each parameter changes in the readings of the same motion, shape (input, channel, parameter).
+        moved
+            What the unknowns change in the readings by the motion, from `differentiate_motions`.
         drop
             Its position.
         """
-        objective = self.objective
-        channels, shared = len(objective.energy), objective.sensors.shared
-        with np.errstate(over="ignore", invalid="ignore"):  # of this thread
-            samples = objective.samples[drop]
-            moved, inputs = of_drop(drop)[:samples], at_samples[:samples, drop]
-            readings = moved[:, :channels]
-            if self._gravity is not None:
-                readings -= self._gravity * (inputs[:, None, self.objective.angles] @ moved[:, channels:])
-            # The unknowns of the sensors come between the parameters of the model and the initial states.
-            readings = np.insert(readings, [shared] * (len(self.values) - shared), 0.0, axis=2)
-            by_sensor = np.moveaxis(inputs @ np.swapaxes(direct[objective.kind[drop]], 1, 2), 0, 2)
-            readings[..., : len(self.values)] += by_sensor
-            readings = self._low_passes[drop].filtered(readings, axis=0)
-            for channel, position in objective.sensors.delay_positions:
-                readings[:, channel, position] = -np.gradient(self._readings[drop, channel, :samples], edge_order=2)
-                readings[:, channel, position] *= objective.decays[drop].rate
-            if (of_corner := objective.sensors.corner_position) is not None:
-                readings[:, :, of_corner] = self._differentiate_by_corner(drop, float(self.values[of_corner])).T
-            readings[samples - objective.low_passes[drop].lag :] = 0.0
-            columns = np.empty((channels, samples, readings.shape[2] + 1))
-            free = self._free_signals[drop, :samples]
-            by_sample = readings.reshape(samples, -1)
-            by_sample -= free @ (free.T @ by_sample)
-            columns[..., :-1] = np.swapaxes(readings, 0, 1)
-            columns[..., -1] = self.residuals[drop, :, :samples]
-            ends = (objective.decays[drop].rate * _FIRST_WINDOW * 2.0 ** np.arange(_WINDOWS - 1)).astype(np.int64)
-            windows = np.split(columns, np.minimum(ends, samples), axis=1)
-            return [np.swapaxes(window, 1, 2) @ window for window in windows]
+        objective, parameters = self.objective, len(self.values)
+        samples, channels, shared = objective.samples[drop], len(objective.energy), objective.sensors.shared
+        moved, inputs = moved[:samples], at_samples[:samples]
+        if self._gravity is not None:
+            moved[:, :channels] -= self._gravity * (inputs[:, None, objective.angles] @ moved[:, channels:])
+        # The unknowns of the sensors come between the parameters of the model and the initial states.
+        readings = np.empty((samples, channels, moved.shape[2] + parameters - shared))
+        readings[..., :parameters] = (inputs @ same.reshape(len(same), -1)).reshape(samples, channels, parameters)
+        readings[..., :shared] += moved[:, :channels, :shared]
+        readings[..., parameters:] = moved[:, :channels, shared:]
+        readings = self._low_passes[drop].filtered(readings, axis=0)
+        for channel, position in objective.sensors.delay_positions:
+            readings[:, channel, position] = -np.gradient(self._readings[drop, channel, :samples], edge_order=2)
+            readings[:, channel, position] *= objective.decays[drop].rate
+        if (of_corner := objective.sensors.corner_position) is not None:
+            readings[:, :, of_corner] = self._differentiate_by_corner(drop, float(self.values[of_corner])).T
+        readings[samples - objective.low_passes[drop].lag :] = 0.0
+        free = self._free_signals[drop, :samples]
+        by_sample = readings.reshape(samples, -1)
+        by_sample -= free @ (free.T @ by_sample)
+        return readings
+
+    def _windows(self, derivatives: Real, drop: int) -> list[Real]:
+        """Return derivatives of one drop, and its residual as the last, cut into windows, (channel, time, column) each."""
+        samples = self.objective.samples[drop]
+        weights = np.sqrt(self.objective.channel_weights[drop])[:, None]
+        columns = np.empty((len(weights), samples, derivatives.shape[2] + 1))
+        np.multiply(np.swapaxes(derivatives, 0, 1), weights[:, None], out=columns[..., :-1])
+        np.multiply(self.residuals[drop, :, :samples], weights, out=columns[..., -1])
+        ends = (self.objective.decays[drop].rate * _FIRST_WINDOW * 2.0 ** np.arange(_WINDOWS - 1)).astype(np.int64)
+        return np.split(columns, np.minimum(ends, samples), axis=1)

@@ -33,8 +33,8 @@ _BELOW = 0.8
 _LOWEST = 25.0
 """Hz below which no logger cuts off the motion of wheels."""
 
-_FIRST, _ITERATIONS, _MOST = 3, 12, 100
-"""Iterations at the most after which a low-pass that is there explains more, as it moves the optimum by little; until its
+_FIRST, _ITERATIONS, _MOST = 1, 12, 100
+"""Iterations after which a low-pass that is there explains more, as it moves the optimum by little; at the most until its
 corner is found; and of a whole fit."""
 
 

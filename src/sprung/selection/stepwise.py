@@ -127,22 +127,24 @@ def select_further_terms(search: ModelSearch, whole: bool) -> ModelSearch:
     search
         The present model and its fit.
     whole
-        Whether the beginnings of the decays have decided already: where they leave no misfit, only scores are looked at.
+        Whether the beginnings of the decays have decided already: only scores are looked at, until they show another term.
 
     Returns
     -------
     ModelSearch
     """
     tried: frozenset[str] = frozenset()
+    # Knees are passed and friction turns round most often in the beginnings: what shows in no score was tried there.
+    decided = search.structure if whole else None
     for _ in range(_FURTHER_ROUNDS):
         if not search.structure.is_nonlinear:
             break
         before = search
         search, fitted = _try_scored(search, tried)
         tried |= {*fitted}
-        if search.structure is before.structure and whole and not search.is_overdispersed:
-            break
         if search.structure is before.structure:
+            if search.structure is decided or (whole and not search.is_overdispersed):
+                break
             untried = _untried(search, tried)
             search = _accept_low_pass(search, _rivals(untried), _hidden(untried))
             if search.structure is before.structure and not search.is_overdispersed:
