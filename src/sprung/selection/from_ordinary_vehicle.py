@@ -18,6 +18,7 @@ from sprung.selection.ordinary_vehicle import (
     ITERATIONS,
     fit_from_ordinary_vehicle,
     fit_usual_terms,
+    is_ordinary,
 )
 from sprung.selection.search import ModelSearch
 from sprung.selection.starts import start_variants
@@ -42,7 +43,9 @@ def select_flexible_body(search: ModelSearch) -> ModelSearch:
     ModelSearch
         Model and fit as given where neither explains it.
     """
-    if not search.is_misfit_large:
+    # A fit to little but what the body itself does may leave little, by a vehicle that nobody has seen.
+    is_astray = search.lacks_something and not is_ordinary(search)
+    if not search.is_misfit_large and not is_astray:
         return search
     for term, tried in fit_flexible_bodies(search, FLEXIBLE_BODIES).items():
         gain = tried.gain_over(search)
