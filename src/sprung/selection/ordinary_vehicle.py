@@ -163,8 +163,14 @@ def fit_from_ordinary_vehicle(search: ModelSearch, structure: ModelStructure) ->
         if name.startswith("m_u") or (name in parts and not name.startswith(_VIBRATES))
     }
     exact = [sensor.exact for sensor in sensors]
-    held = fit_linear(search.decays, models, exact, {**first, **known}, start=values, enough=NEAR, most=ITERATIONS)
-    fit = fit_linear(search.decays, models, sensors, known, start=held.parameters, enough=NEAR, most=ITERATIONS)
+    # Where a fit makes the damping of a part vanish on its way, no derivative brings it back.
+    usual = {name: size for name, size in usual_sizes(structure, values).items() if name in parts and name not in first}
+    held = fit_linear(
+        search.decays, models, exact, {**first, **known}, start=values, usual=usual, enough=NEAR, most=ITERATIONS
+    )
+    fit = fit_linear(
+        search.decays, models, sensors, known, start=held.parameters, usual=usual, enough=NEAR, most=ITERATIONS
+    )
     return replace(search, structure=structure, fit=fit.after(search.fit))
 
 
