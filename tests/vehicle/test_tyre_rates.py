@@ -68,3 +68,14 @@ def test_they_are_identified_from_drops_in_which_they_leave_the_ground() -> None
     point = result.curves["tyre_front"].at(deflection)
     error = float(point.force) - CAR.k_tf * deflection * (1 - GROWTH * deflection / 2)
     assert abs(error) < 4 * float(point.std)
+
+
+def test_their_curve_ends_where_a_falling_wheel_leaves_it() -> None:
+    drops = [
+        {"wheels": wheels, "load": load} for load in ("empty", "ballast") for wheels in (("fl", "fr"), ("rl", "rr"))
+    ]
+    load = {"name": "ballast", "items": [{"mass": 140.0, "position": (-1.0, 0.3, 0.5)}]}
+    car = CAR.with_values(c_tf=0.0, c_tr=0.0)
+    campaign = sprung.simulate(car, loads=[load], drops=drops, duration=2.0, noise=0.02, seed=2)
+    result = sprung.identify(campaign, extras=("tyre-curve",), tracks="shared", fall=True)
+    assert {name: curve.reached[1] for name, curve in result.curves.items()} == {"tyre_front": 0.0, "tyre_rear": 0.0}
