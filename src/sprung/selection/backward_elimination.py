@@ -6,11 +6,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from sprung.estimation import FitStatistics
+from sprung.estimation import FitStatistics, UsualValue
 from sprung.selection.search import ModelSearch
 from sprung.selection.structure import ModelStructure
 from sprung.selection.terms import TERMS
-from sprung.vehicle import PARAMETERS
+from sprung.vehicle import NEUTRAL, PARAMETERS
+
+_HELD = 1.3
+"""Factor within which a factor is held near one that the recordings do not determine."""
 
 
 def needed_terms(search: ModelSearch) -> dict[str, float]:
@@ -116,10 +119,20 @@ def leave_out_unneeded(
         against = {term: tried.veto(term) for term in tried.selected if term != keep}
         if not against:
             break
-        gains = {term: 0.0 if reason else tried.wald_gain(term) for term, reason in against.items()}
-        least = min(gains, key=lambda term: gains[term] / tried.required(term))
-        if gains[least] > tried.required(least):
-            return tried, gains
+        # What is not determined beside a term that is not needed may be so without it: its turn comes last.
+        last = [term for term in against if against[term] and tried.undetermined(term)]
+        gains = {
+            term: 0.0 if reason and term not in last else tried.wald_gain(term) for term, reason in against.items()
+        }
+        missed = {term: gain / tried.required(term) for term, gain in gains.items()}
+        least = min(missed, key=missed.__getitem__)
+        if missed[least] > 1:
+            if not last:
+                return tried, gains
+            least = min(last, key=missed.__getitem__)
+            if (held := _with_held_parts(tried, least)) is not None:
+                tried = tried.refit(held)
+                continue
         tried = tried.recorded({least: gains[least]}, True, False, against[least])
         smaller = _with_counterpart(tried, least)
         tried = replace(before, steps=tried.steps) if smaller.names == before.structure.names else tried.refit(smaller)
@@ -127,6 +140,20 @@ def leave_out_unneeded(
             # A new term beside which an old one means nothing does not replace it unless it explains as much.
             return replace(before, steps=tried.steps), {}
     return tried, {}
+
+
+def _with_held_parts(search: ModelSearch, term: str) -> ModelStructure | None:
+    """Return the structure with factors of a term held near one that the recordings do not determine; None where all are.
+
+    They may show it at one of the axles only.
+    """
+    factors = {name for name in search.undetermined(term) if NEUTRAL.get(name) == 1.0}
+    structure = search.structure
+    others = {*TERMS[term].parameters(structure.tracks, structure.layout)} - factors
+    if not factors or not others or {*search.undetermined(term)} - factors:
+        return None
+    held = dict.fromkeys(sorted(factors), UsualValue(1.0, _HELD))
+    return replace(structure, usual={**structure.usual, **held})
 
 
 def counterpart_of(search: ModelSearch, term: str) -> str:

@@ -340,8 +340,7 @@ class ModelSearch:
         ]
         if any(wald_test(self.fit, [(name, 0.0)]) > limit for name in below):
             return "the estimate is negative, which is not physical"
-        undetermined = self._undetermined(row.parameters(self.structure.tracks, self.structure.layout))
-        if undetermined:
+        if undetermined := self.undetermined(term):
             return f"the recordings do not determine {', '.join(undetermined)}"
         if row.is_something_else(parameters):
             return "no part of its kind vibrates, relaxes or has a knee like that"
@@ -350,8 +349,9 @@ class ModelSearch:
             return f"its effect of {100 * size:.2g} % is negligible"
         return ""
 
-    def _undetermined(self, names: Sequence[str]) -> list[str]:
-        """Return those of some positive parameters that are not known to a factor of e beside the total mass."""
+    def undetermined(self, term: str) -> list[str]:
+        """Return the positive parameters of a term of the model that are not known to a factor of e beside the total mass."""
+        names = TERMS[term].parameters(self.structure.tracks, self.structure.layout)
         equations = self.fit.problem.normal_equations(self.fit.iterate)
         along = per_total_mass(self.fit, np.eye(len(self.fit.names))) @ equations.directions
         variance = np.einsum("ud,du->u", along, np.linalg.solve(equations.information, along.T)) * self.overdispersion
