@@ -16,6 +16,7 @@ from sprung.selection.backward_elimination import counterpart_of, leave_out_unne
 from sprung.selection.contact import from_contact
 from sprung.selection.error_budget import MISFIT_LEFT_BY_ALL
 from sprung.selection.low_pass import confirm_low_pass, select_low_pass
+from sprung.selection.ordinary_vehicle import fit_from_ordinary_vehicle
 from sprung.selection.scoring import WORTH_A_FIT, Scores, score_terms
 from sprung.selection.search import ModelSearch
 from sprung.selection.term_fits import (
@@ -39,6 +40,9 @@ _EXPLAINED = 0.7
 
 _RIVALS, _RIVAL_SCORE = 2, 0.5
 """How many terms are fitted beside one that leaves a misfit, and their scores at the least, as a part of its score."""
+
+_MUCH_LEFT = 0.5
+"""Part of the model error that a term leaves at the most beside which terms are tried again that were refused without it."""
 
 _FURTHER_ROUNDS, _TRIED_BESIDE = 8, 2
 """How many times terms are looked for beside nonlinear ones, and how many are fitted each time until one is accepted."""
@@ -71,9 +75,18 @@ def select_linear_terms(
             break
         if search.is_overdispersed and len(among) == len(_LINEAR):
             # The model before did not show where a wheel last touched: samples before that would accept any further term.
-            search = from_contact(search)
+            search = from_contact(_or_from_ordinary_vehicle(search))
         refused = ()
     return search
+
+
+def _or_from_ordinary_vehicle(search: ModelSearch) -> ModelSearch:
+    """Return the search, or its model as fitted from an ordinary vehicle where that explains more.
+
+    A model that lacks something may have led the one with a further term to another optimum.
+    """
+    other = fit_from_ordinary_vehicle(search, search.structure)
+    return other if other.fit.converged and other.gain_over(search) > search.required_of_switch else search
 
 
 def select_terms_beside(search: ModelSearch) -> ModelSearch:
@@ -151,7 +164,9 @@ def select_further_terms(search: ModelSearch, whole: bool) -> ModelSearch:
                 break
         if search.structure is before.structure:
             search = _accept_unscored(search, tried, with_parts=not whole and search.lacks_something)
-        if _hidden(search.structure.terms) != _hidden(before.structure.terms):
+        is_larger = search.structure is not before.structure
+        explains_much = is_larger and not before.leaves_misfit(search.fit, _MUCH_LEFT)
+        if explains_much or _hidden(search.structure.terms) != _hidden(before.structure.terms):
             # What was refused without it may be needed beside it.
             tried = frozenset()
         if search.structure is before.structure:

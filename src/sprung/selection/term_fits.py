@@ -183,6 +183,8 @@ def fit_nonlinear_term(search: ModelSearch, larger: ModelStructure, first: FitRe
         first = max(first, held, key=lambda fit: fit.loglikelihood)
     if search.leaves_misfit(first, MISFIT_LEFT_AT_FIRST):
         return None
+    if not (first.converged or search.lacks_something) and search.is_better_than(first):
+        return None  # on the way from a usual size to none
     if not first.converged:
         enough = _enough_to_compare(search)
         first = fit_structure(larger, search.decays, first, enough, search.progress, beginning_only=True)
