@@ -108,8 +108,15 @@ def _with_usual_terms(base: ModelSearch, plain: ModelStructure, so_far: ModelSea
 
 
 def _refused_parts(search: ModelSearch) -> list[str]:
-    """Return the parts that vibrate by themselves and gained much, but were refused."""
-    refused = {step.extra for step in search.steps if step.fitted and not step.taken and step.gain > step.asked}
+    """Return the parts that vibrate by themselves and gained more than chance does, but were refused.
+
+    Beside what else is missing they may explain but a small part of it.
+    """
+    refused = {
+        step.extra
+        for step in search.steps
+        if step.fitted and not step.taken and step.gain > search.significant(step.extra)
+    }
     return [term for term in search.open_terms([*refused]) if TERMS[term].vibrates_by_itself]
 
 
