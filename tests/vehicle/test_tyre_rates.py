@@ -70,6 +70,7 @@ def test_they_are_identified_from_drops_in_which_they_leave_the_ground() -> None
     assert abs(error) < 4 * float(point.std)
 
 
+@pytest.mark.slow
 def test_their_curve_ends_where_a_falling_wheel_leaves_it() -> None:
     drops = [
         {"wheels": wheels, "load": load} for load in ("empty", "ballast") for wheels in (("fl", "fr"), ("rl", "rr"))
