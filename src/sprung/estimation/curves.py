@@ -168,7 +168,7 @@ def force_curves(
 def _curve(fit: FitStatistics, elements: CurveElements, reached: tuple[float, float]) -> ForceCurve | None:
     """Return one curve; None where it is straight as far as the drops reach, or not determined."""
     if elements.is_of_tyre:
-        # A tyre that is off the ground, as a fit with errors may have it, has no force.
+        # A tyre that is off the ground, as in a fit that uses the fall, has no force.
         reached = min(reached[0], 0.0), min(reached[1], 0.0)
     length = _EXTENSION * max(map(abs, reached))
     spacing = np.linspace(-1, 1, 2 * _DENSE + 1)

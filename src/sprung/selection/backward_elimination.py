@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -120,7 +121,8 @@ def leave_out_unneeded(
         if not against:
             break
         # What is not determined beside a term that is not needed may be so without it: its turn comes last.
-        last = [term for term in against if against[term] and tried.undetermined(term)]
+        undetermined = {term: tried.undetermined(term) for term, reason in against.items() if reason}
+        last = [term for term, names in undetermined.items() if names]
         gains = {
             term: 0.0 if reason and term not in last else tried.wald_gain(term) for term, reason in against.items()
         }
@@ -130,7 +132,7 @@ def leave_out_unneeded(
             if not last:
                 return tried, gains
             least = min(last, key=missed.__getitem__)
-            if (held := _with_held_parts(tried, least)) is not None:
+            if (held := _with_held_factors(tried.structure, least, undetermined[least])) is not None:
                 tried = tried.refit(held)
                 continue
         tried = tried.recorded({least: gains[least]}, True, False, against[least])
@@ -142,17 +144,15 @@ def leave_out_unneeded(
     return tried, {}
 
 
-def _with_held_parts(search: ModelSearch, term: str) -> ModelStructure | None:
-    """Return the structure with factors of a term held near one that the recordings do not determine; None where all are.
+def _with_held_factors(structure: ModelStructure, term: str, undetermined: Sequence[str]) -> ModelStructure | None:
+    """Return the structure with undetermined factors of a term held near one; None where others are, or all of the term's.
 
-    They may show it at one of the axles only.
+    The recordings may show it at one of the axles only.
     """
-    factors = {name for name in search.undetermined(term) if NEUTRAL.get(name) == 1.0}
-    structure = search.structure
-    others = {*TERMS[term].parameters(structure.tracks, structure.layout)} - factors
-    if not factors or not others or {*search.undetermined(term)} - factors:
+    is_whole = {*undetermined} == {*TERMS[term].parameters(structure.tracks, structure.layout)}
+    if is_whole or any(NEUTRAL.get(name) != 1.0 for name in undetermined):
         return None
-    held = dict.fromkeys(sorted(factors), UsualValue(1.0, _HELD))
+    held = dict.fromkeys(undetermined, UsualValue(1.0, _HELD))
     return replace(structure, usual={**structure.usual, **held})
 
 

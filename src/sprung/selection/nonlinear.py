@@ -95,10 +95,11 @@ def _searches(
     bases = [simplest] if is_plain else [search, simplest]
     for base in bases if search.is_misfit_large and hidden else ():
         yield partial(_from_base, base, hidden)
-    flexible = [term for term in FLEXIBLE_BODIES if term in _refused_parts(search)]
+    refused = _refused_parts(search)
+    flexible = [term for term in FLEXIBLE_BODIES if term in refused]
     for body in fit_flexible_bodies(simplest, flexible).values() if search.is_misfit_large else ():
         yield partial(_with_usual_terms, body, plain)
-    if search.is_misfit_large or (search.lacks_something and _refused_parts(search)):
+    if search.is_misfit_large or (search.lacks_something and refused):
         yield partial(_from_likeliest_beginning, bases, terms)
 
 
