@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from sprung.progress import Step
+from sprung.selection.backward_elimination import leave_out_unneeded
 from sprung.selection.contact import from_contact
 from sprung.selection.error_budget import MISFIT_LEFT
 from sprung.selection.linear_terms import FLEXIBLE_BODIES
@@ -47,17 +48,34 @@ def select_flexible_body(search: ModelSearch) -> ModelSearch:
     is_astray = search.lacks_something and not is_ordinary(search)
     if not search.is_misfit_large and not is_astray:
         return search
-    for term, tried in fit_flexible_bodies(search, FLEXIBLE_BODIES).items():
-        gain = tried.gain_over(search)
-        if search.leaves_misfit(tried.fit, MISFIT_LEFT) or tried.veto(term) or gain < search.required(term):
+    # Where rubber is missing as well, a flexible body explains a part of the misfit alone.
+    bodies: Sequence[str] = FLEXIBLE_BODIES
+    rubber = tuple(term for term in _usual_terms(search.structure) if TERMS[term].is_linear)
+    for beside in dict.fromkeys(((), rubber)):
+        partly = []
+        for term, tried in fit_flexible_bodies(search, bodies, beside).items():
+            gain = tried.gain_over(search)
+            if gain > search.required(term) and not search.leaves_misfit(tried.fit, MISFIT_LEFT) and not tried.veto(term):
+                # A rigid body did not show where a wheel last touched: samples before that would accept any further term.
+                return from_contact(_without_usual_sizes(replace(tried, steps=search.steps), search))
+            partly += [term] if gain > search.required(term) else []
             search = search.recorded({term: gain}, True, False, "an ordinary vehicle with it explains no more")
-        else:
-            # A rigid body did not show where a wheel last touched: samples before that would accept any further term.
-            return from_contact(replace(tried, steps=search.steps).recorded({term: gain}, True, True))
+        bodies = partly
     return search
 
 
-def fit_flexible_bodies(search: ModelSearch, terms: Sequence[str]) -> dict[str, ModelSearch]:
+def _usual_terms(structure: ModelStructure) -> tuple[str, ...]:
+    """Return the terms about which the recordings decide that most vehicles have."""
+    return tuple(term for term in structure.open_terms if TERMS[term].usual is not None and term not in structure.terms)
+
+
+def _without_usual_sizes(rich: ModelSearch, before: ModelSearch) -> ModelSearch:
+    """Fit a larger linear model than before without priors of its terms, and without those that are not needed."""
+    found, gains = leave_out_unneeded(rich.refit(rich.structure), before)
+    return found.recorded(gains, True, True)
+
+
+def fit_flexible_bodies(search: ModelSearch, terms: Sequence[str], beside: Sequence[str] = ()) -> dict[str, ModelSearch]:
     """Fit a body that twists, or one that bends, from an ordinary vehicle that has it.
 
     Parameters
@@ -66,6 +84,8 @@ def fit_flexible_bodies(search: ModelSearch, terms: Sequence[str]) -> dict[str, 
         The present model and its fit, linear.
     terms
         Which of them.
+    beside
+        Other linear terms that the vehicle has.
 
     Returns
     -------
@@ -74,8 +94,8 @@ def fit_flexible_bodies(search: ModelSearch, terms: Sequence[str]) -> dict[str, 
     """
     found: dict[str, ModelSearch] = {}
     for term in search.open_terms(terms):
-        search.progress(Step(f"fitting an ordinary vehicle with {term}"))
-        larger = search.with_terms([term])
+        search.progress(Step(f"fitting an ordinary vehicle with {', '.join((term, *beside))}"))
+        larger = search.with_terms([*beside, term])
         ends = [
             fit_from_ordinary_vehicle(search, variant)
             for variant in start_variants(term, larger, search.fit.parameters)
@@ -99,7 +119,7 @@ def select_from_ordinary_vehicle(search: ModelSearch, plain: ModelStructure) -> 
     ModelSearch
         Model and fit as given where the ordinary vehicle explains no more.
     """
-    terms = tuple(name for name in plain.open_terms if TERMS[name].usual is not None)
+    terms = _usual_terms(plain)
     if not terms:
         return search
     search.progress(Step("fitting an ordinary vehicle with every usual term"))

@@ -164,7 +164,7 @@ def fit_from_ordinary_vehicle(search: ModelSearch, structure: ModelStructure) ->
     }
     exact = [sensor.exact for sensor in sensors]
     # Where a fit makes the damping of a part vanish on its way, no derivative brings it back.
-    usual = {name: size for name, size in usual_sizes(structure, values).items() if name in parts and name not in first}
+    usual = {name: size for name, size in usual_sizes(structure, values).items() if name not in first}
     held = fit_linear(
         search.decays, models, exact, {**first, **known}, start=values, usual=usual, enough=NEAR, most=ITERATIONS
     )
