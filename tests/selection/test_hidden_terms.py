@@ -21,6 +21,9 @@ PEOPLE = {"m_o": 140.0, "k_o": 140.0 * (2 * 3.1416 * 4.4) ** 2, "c_o": 2200.0, "
 CURVE = {"r_f": 1.8, "r_r": 1.8, "v_kf": 0.08, "v_kr": 0.08, "q_f": 0.5, "q_r": 0.5}
 """Dampers with a knee, harder in rebound."""
 
+BENDING = {"m_v": 80.0, "k_v": 80.0 * (2 * 3.1416 * 11.0) ** 2, "c_v": 400.0, "b_v": 0.6, "p_v": 0.1}
+"""A body that bends at 11 Hz."""
+
 SOFT_MOUNTS = {"k_df": 1.6e5, "k_dr": 2.2e5, "c_df": 350.0, "c_dr": 300.0}
 """Rubber mounts of dampers."""
 
@@ -28,8 +31,8 @@ SOFT_MOUNTS = {"k_df": 1.6e5, "k_dr": 2.2e5, "c_df": 350.0, "c_dr": 300.0}
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("first", "second"),
-    [(TWIST, AIR), (PEOPLE, CURVE), (TWIST, SOFT_MOUNTS)],
-    ids=["twist behind air springs", "people behind damper curves", "twist behind soft mounts"],
+    [(TWIST, AIR), (PEOPLE, CURVE), (TWIST, SOFT_MOUNTS), (PEOPLE, BENDING)],
+    ids=["twist behind air springs", "people behind damper curves", "twist behind soft mounts", "people behind bending"],
 )
 def test_both_of_two_effects_are_found(first: dict[str, float], second: dict[str, float]) -> None:
     car = Vehicle.from_parameters(TABLE_1_CAR.parameters | first | second)

@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-import numpy as np
-
 from sprung.analysis.analysis import MOST_RESTARTS, Analysis
 from sprung.analysis.baseline import converged
 from sprung.analysis.first_term import explaining_term
@@ -26,11 +24,9 @@ from sprung.faults import (
 from sprung.preprocess import FreeDecay
 from sprung.progress import Progress, Step, silent
 from sprung.selection import (
-    FLEXIBLE_BODIES,
     SEPARATE_TRACKS,
     ModelSearch,
     ModelStructure,
-    fit_flexible_bodies,
     fit_structure,
     needed_terms,
 )
@@ -65,25 +61,7 @@ def isolate_evident_faults(run: Analysis, progress: Progress) -> Analysis:
         run = _with_isolated(turned, _consistency(turned), progress)
     if not _is_evident(run.found):
         return run
-    if _is_less_likely_than_flexible_body(run.found[-1], run.model):
-        return run.noted("isolate_evident_faults", "nothing is corrected yet", "a body that is not rigid explains more")
     return _corrected(run, run.found, "isolate_evident_faults")
-
-
-def _is_less_likely_than_flexible_body(hypothesis: Hypothesis, search: ModelSearch) -> bool:
-    """Whether a fault that leaves much, though it is gross, explains less of each sample than a body that twists or bends.
-
-    No sensor of such a body moves as the other ones say it should, which two exchanged ones seem to explain.
-    """
-    after = hypothesis.candidate
-    if after.is_explained or not hypothesis.is_gross:
-        return False
-    bodies = fit_flexible_bodies(search, FLEXIBLE_BODIES).values()
-    exchanged, *flexible = (
-        fit.loglikelihood / sum(decay.samples for decay in fit.decays)
-        for fit in (after.fit, *(one.fit for one in bodies))
-    )
-    return max(flexible, default=-np.inf) > exchanged
 
 
 def isolate_faults(run: Analysis, progress: Progress) -> Analysis:

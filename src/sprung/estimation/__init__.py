@@ -42,7 +42,7 @@ from sprung.estimation.starts import (
     usual_vehicle,
 )
 from sprung.estimation.statements import readout_of, statements_of
-from sprung.estimation.statistics import FitStatistics, Inflater, fit_jointly, uncertainty_of
+from sprung.estimation.statistics import FitStatistics, Inflater, consider_held, fit_jointly, uncertainty_of
 from sprung.estimation.subspace import canonical_basis
 
 __all__ = [
@@ -82,6 +82,7 @@ __all__ = [
     "canonical_basis",
     "characteristics_of",
     "clear_of_splines",
+    "consider_held",
     "correlation_of",
     "eliminate",
     "engine_mountings",

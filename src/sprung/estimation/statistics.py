@@ -234,6 +234,38 @@ def uncertainty_of(fit: FitResult) -> FitStatistics:
     )
 
 
+def consider_held(statistics: FitStatistics, larger: FitStatistics, spreads: Mapping[str, float]) -> FitStatistics:
+    """Return the statistics of a fit in which some parameters were held that are uncertain.
+
+    What they may be widens the covariance of the others, by as much as the records do not tell them themselves (consider
+    covariance; Schmidt, Adv. Control Syst. 3 (1966) 293).
+
+    Parameters
+    ----------
+    statistics
+        Of the fit.
+    larger
+        Where the fit ended, of the model in which the held parameters are free.
+    spreads
+        Standard uncertainty of each of them, by its name, SI.
+
+    Returns
+    -------
+    FitStatistics
+    """
+    held = [larger.names.index(name) for name in spreads]
+    prior = np.array([*spreads.values()]) / np.abs(larger.slopes[held])
+    free = larger.relative_covariance
+    gained = free[:, held] @ np.linalg.solve(free[np.ix_(held, held)] + np.diag(prior**2), free[held])
+    own = [larger.names.index(name) for name in statistics.names]
+    relative = (free - gained)[np.ix_(own, own)]
+    return replace(
+        statistics,
+        relative_covariance=relative,
+        covariance=relative * np.outer(statistics.slopes, statistics.slopes),
+    )
+
+
 def _inflater(fit: FitResult) -> Inflater:
     """Return what inflates the variances of a fit most."""
     if fit.overdispersion == 1:

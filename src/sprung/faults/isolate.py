@@ -18,8 +18,9 @@ from sprung.faults.correction import Correction, exclude_drops, mask_channel
 from sprung.faults.drop import DROP_HYPOTHESES
 from sprung.faults.drop.deletion import DropDeletion
 from sprung.faults.hypothesis import Hypothesis, best_of
+from sprung.faults.residual_table import residual_table
 from sprung.progress import Progress, Step, silent
-from sprung.selection import WORTH_A_FIT
+from sprung.selection import FLEXIBLE_BODIES, WORTH_A_FIT, ModelSearch, fit_flexible_bodies
 
 _FEW = 0.85
 """Share of a misfit that a first fault may leave while a second one is looked for."""
@@ -113,16 +114,35 @@ def most_likely(base: CandidateFit, progress: Progress = silent) -> tuple[Hypoth
         fits += more
         if best is not None and (is_near or best.candidate.is_explained):
             return _with_rival(base, best, ranked), fits
+    left, more = (np.inf, 0) if is_near else _left_by_flexible_body(base)
+    fits += more
+    if left < _WHOLLY * base.misfit:
+        return None, fits
     best = None
     for hypotheses, made in _groups(base, deletions, progress):
         other, ranked, more = _confirm_best(base, [*ranked, *hypotheses])
         fits += made + more
+        if other is not None and other.is_gross and other.candidate.misfit > left:
+            continue
         if other is not None and (best is None or other.score() < best.score()):
             best = other
         if best is not None and best.candidate.is_explained:
             break
     best = best or _left_over(base, ranked)
     return (None if best is None else _with_rival(base, best, ranked)), fits
+
+
+def _left_by_flexible_body(base: CandidateFit) -> tuple[float, int]:
+    """Return the misfit that an ordinary vehicle with a body that twists or bends leaves, and how many were fitted.
+
+    No sensor of such a body moves as the other ones say it should, which two exchanged ones seem to explain.
+    """
+    search = ModelSearch(base.structure, base.fit, base.decays)
+    if not search.is_misfit_large:
+        return np.inf, 0
+    bodies = fit_flexible_bodies(search, FLEXIBLE_BODIES).values()
+    tables = [residual_table(base.recordings, base.decays, body.fit) for body in bodies]
+    return min((table.misfit(base.noise) for table in tables), default=np.inf), len(tables)
 
 
 def _groups(

@@ -26,6 +26,7 @@ from sprung.selection.term_fits import (
     fit_term,
     select_gravity_leakage,
     select_roll_axis_height,
+    with_neutral_terms,
 )
 from sprung.selection.terms import TERMS
 
@@ -68,4 +69,5 @@ __all__ = [
     "select_nonlinear_terms",
     "select_roll_axis_height",
     "try_term",
+    "with_neutral_terms",
 ]

@@ -111,7 +111,7 @@ def leave_out_unneeded(
     Returns
     -------
     search
-        With what is left.
+        With what is left. The model before has its own fit, or a better one to which the larger model has led.
     gains
         What would be lost without each of the terms that are left; empty where that is the model before.
     """
@@ -137,11 +137,23 @@ def leave_out_unneeded(
                 continue
         tried = tried.recorded({least: gains[least]}, True, False, against[least])
         smaller = _with_counterpart(tried, least)
-        tried = replace(before, steps=tried.steps) if smaller.names == before.structure.names else tried.refit(smaller)
+        tried = _back_to(before, tried, least) if smaller.names == before.structure.names else tried.refit(smaller)
         if least in before.selected and tried.delta_bic(before) < 0:
             # A new term beside which an old one means nothing does not replace it unless it explains as much.
             return replace(before, steps=tried.steps), {}
     return tried, {}
+
+
+def _back_to(before: ModelSearch, tried: ModelSearch, term: str) -> ModelSearch:
+    """Return the model before, without a term of a larger one; at the optimum to which that one has led, if it is better.
+
+    Where a larger model explains far more than it would lose without its term, the one before had ended elsewhere.
+    """
+    back = replace(before, steps=tried.steps)
+    if not before.lacks_something or tried.gain_over(before) < tried.wald_gain(term) + before.required_of_switch:
+        return back
+    again = tried.refit(before.structure)
+    return again if again.gain_over(back) > before.required_of_switch else back
 
 
 def _with_held_factors(structure: ModelStructure, term: str, undetermined: Sequence[str]) -> ModelStructure | None:

@@ -55,7 +55,11 @@ def select_flexible_body(search: ModelSearch) -> ModelSearch:
         partly = []
         for term, tried in fit_flexible_bodies(search, bodies, beside).items():
             gain = tried.gain_over(search)
-            if gain > search.required(term) and not search.leaves_misfit(tried.fit, MISFIT_LEFT) and not tried.veto(term):
+            if (
+                gain > search.required(term)
+                and not search.leaves_misfit(tried.fit, MISFIT_LEFT)
+                and not tried.veto(term)
+            ):
                 # A rigid body did not show where a wheel last touched: samples before that would accept any further term.
                 return from_contact(_without_usual_sizes(replace(tried, steps=search.steps), search))
             partly += [term] if gain > search.required(term) else []
@@ -75,7 +79,9 @@ def _without_usual_sizes(rich: ModelSearch, before: ModelSearch) -> ModelSearch:
     return found.recorded(gains, True, True)
 
 
-def fit_flexible_bodies(search: ModelSearch, terms: Sequence[str], beside: Sequence[str] = ()) -> dict[str, ModelSearch]:
+def fit_flexible_bodies(
+    search: ModelSearch, terms: Sequence[str], beside: Sequence[str] = ()
+) -> dict[str, ModelSearch]:
     """Fit a body that twists, or one that bends, from an ordinary vehicle that has it.
 
     Parameters

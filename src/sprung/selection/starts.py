@@ -104,6 +104,7 @@ def fit_structure(
     states: Real | None = None,
     beginning_only: bool = False,
     most: int = 100,
+    start: Mapping[str, float] | None = None,
 ) -> FitResult:
     """Fit a structure from where another one's fit ended.
 
@@ -126,13 +127,15 @@ def fit_structure(
         Whether the beginnings of the decays are enough; for nonlinear structures.
     most
         Largest number of iterations, likewise.
+    start
+        Parameters to begin with, SI, by name, instead of those of the fit before and first values of what it has not.
 
     Returns
     -------
     FitResult
     """
     sensors, known = structure.sensors, structure.known
-    start = start_values(structure, before.parameters)
+    start = start_values(structure, before.parameters) if start is None else start
     if not structure.is_time_stepped:
         fitted = fit_linear(
             decays,

@@ -14,7 +14,7 @@ from sprung.estimation import FitResult, beginning_of
 from sprung.preprocess import FreeDecay
 from sprung.selection.backward_elimination import counterpart_of, leave_out_unneeded
 from sprung.selection.contact import from_contact
-from sprung.selection.error_budget import MISFIT_LEFT_BY_ALL
+from sprung.selection.error_budget import MISFIT_LEFT, MISFIT_LEFT_BY_ALL
 from sprung.selection.low_pass import confirm_low_pass, select_low_pass
 from sprung.selection.ordinary_vehicle import fit_from_ordinary_vehicle
 from sprung.selection.scoring import WORTH_A_FIT, Scores, score_terms
@@ -43,6 +43,9 @@ _RIVALS, _RIVAL_SCORE = 2, 0.5
 
 _MUCH_LEFT = 0.5
 """Part of the model error that a term leaves at the most beside which terms are tried again that were refused without it."""
+
+_CONTINUED = 3
+"""How many times a fit is continued that has not converged and explains nearly all."""
 
 _FURTHER_ROUNDS, _TRIED_BESIDE = 8, 2
 """How many times terms are looked for beside nonlinear ones, and how many are fitted each time until one is accepted."""
@@ -164,12 +167,12 @@ def select_further_terms(search: ModelSearch, whole: bool) -> ModelSearch:
                 break
         if search.structure is before.structure:
             search = _accept_unscored(search, tried, with_parts=not whole and search.lacks_something)
-        is_larger = search.structure is not before.structure
-        explains_much = is_larger and not before.leaves_misfit(search.fit, _MUCH_LEFT)
+        has_moved = search.fit is not before.fit
+        explains_much = has_moved and not before.leaves_misfit(search.fit, _MUCH_LEFT)
         if explains_much or _hidden(search.structure.terms) != _hidden(before.structure.terms):
             # What was refused without it may be needed beside it.
             tried = frozenset()
-        if search.structure is before.structure:
+        if not has_moved:
             break
     return search
 
@@ -236,6 +239,25 @@ def _hidden(terms: Sequence[str]) -> list[str]:
 def _parts(terms: Sequence[str]) -> list[str]:
     """Return the terms that are parts which vibrate by themselves: where they are nothing no score tells their place."""
     return [term for term in terms if TERMS[term].vibrates_by_itself]
+
+
+def _settled(search: ModelSearch, tried: ModelSearch, term: str) -> tuple[ModelSearch, str]:
+    """Fit a model on that explains nearly all with a term, as long as it gains more than chance does; tell what is against it.
+
+    Parts of which little is known, people on their seats above all, are a long way off.
+    """
+    for _ in range(_CONTINUED):
+        if tried.gain_over(search) <= search.required(term):
+            return tried, ""
+        if tried.fit.converged or search.leaves_misfit(tried.fit, MISFIT_LEFT):
+            break
+        before, tried = tried, tried.refit(tried.structure)
+        if tried.gain_over(before) < search.required_of_switch:
+            tried = replace(tried, fit=replace(tried.fit, converged=True))
+    if not tried.fit.converged:
+        return tried, "the fit with it did not converge"
+    is_like_noise = not search.is_misfit_small or tried.overdispersion <= _EXPLAINED * search.overdispersion
+    return tried, "" if is_like_noise else "what is left is no more like noise with it"
 
 
 def _laws_of_part(term: str, terms: Sequence[str]) -> list[str]:
@@ -385,17 +407,14 @@ def try_term(
         tried = fit_linear_term(stepped, term)
     if tried is None:
         return search.recorded({term: 0.0}, True, False)
+    tried, against = _settled(search, tried, term)
     gain = tried.gain_over(search)
-    enough, against = gain > search.required(term), ""
-    if enough and not tried.fit.converged:
-        against = "the fit with it did not converge"
-    elif enough and search.is_misfit_small and tried.overdispersion > _EXPLAINED * search.overdispersion:
-        against = "what is left is no more like noise with it"
+    enough = gain > search.required(term)
     if against or not enough:
         return search.recorded({term: gain}, True, False, against)
     if larger.is_nonlinear:
         tried, gains = leave_out_unneeded(tried, search)
-        return tried.recorded(gains, True, True) if gains else replace(search, steps=tried.steps)
+        return tried.recorded(gains, True, True)
     against, counterpart = tried.veto(term), counterpart_of(tried, term)
     tried = tried.recorded({term: gain}, True, True)
     if not against and TERMS[term].explains_all and search.leaves_misfit(tried.fit, MISFIT_LEFT_BY_ALL):

@@ -23,7 +23,7 @@ from sprung.selection.ordinary_vehicle import (
 )
 from sprung.selection.scoring import WORTH_A_FIT, with_best_start
 from sprung.selection.search import ModelSearch
-from sprung.selection.starts import fit_structure, has_positive_masses, start_values
+from sprung.selection.starts import fit_structure, has_positive_masses, neutral_values, start_values
 from sprung.selection.structure import ModelStructure
 from sprung.selection.terms import TERMS
 from sprung.uncertainty import KnownValue
@@ -154,6 +154,26 @@ def fit_linear_term(search: ModelSearch, term: str) -> ModelSearch:
     if search.is_misfit_large and not is_ordinary(search):
         ends.append(fit_from_ordinary_vehicle(search, larger))
     return max(ends, key=lambda end: (end.fit.converged, end.fit.loglikelihood))
+
+
+def with_neutral_terms(search: ModelSearch, terms: Sequence[str]) -> ModelSearch:
+    """Return the model with more terms where its fit has ended, these doing nothing.
+
+    Parameters
+    ----------
+    search
+        A model and its fit.
+    terms
+        What it has not.
+
+    Returns
+    -------
+    ModelSearch
+    """
+    larger = search.with_terms(terms)
+    neutral = neutral_values(larger, search.fit.parameters)
+    fit = fit_structure(larger, search.decays, search.fit, NEAR, search.progress, most=0, start=neutral)
+    return replace(search, structure=larger, fit=fit)
 
 
 def begin_nonlinear_fit(search: ModelSearch, larger: ModelStructure) -> FitResult:
