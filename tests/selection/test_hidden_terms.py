@@ -32,7 +32,12 @@ SOFT_MOUNTS = {"k_df": 1.6e5, "k_dr": 2.2e5, "c_df": 350.0, "c_dr": 300.0}
 @pytest.mark.parametrize(
     ("first", "second"),
     [(TWIST, AIR), (PEOPLE, CURVE), (TWIST, SOFT_MOUNTS), (PEOPLE, BENDING)],
-    ids=["twist behind air springs", "people behind damper curves", "twist behind soft mounts", "people behind bending"],
+    ids=[
+        "twist behind air springs",
+        "people behind damper curves",
+        "twist behind soft mounts",
+        "people behind bending",
+    ],
 )
 def test_both_of_two_effects_are_found(first: dict[str, float], second: dict[str, float]) -> None:
     car = Vehicle.from_parameters(TABLE_1_CAR.parameters | first | second)
