@@ -61,7 +61,8 @@ def select_flexible_body(search: ModelSearch) -> ModelSearch:
                 and not tried.veto(term)
             ):
                 # A rigid body did not show where a wheel last touched: samples before that would accept any further term.
-                return from_contact(_without_usual_sizes(replace(tried, steps=search.steps), search))
+                needed, gains = leave_out_unneeded(replace(tried, steps=search.steps), search, keep=term)
+                return from_contact(needed.recorded({term: gain, **gains}, True, True))
             partly += [term] if gain > search.required(term) else []
             search = search.recorded({term: gain}, True, False, "an ordinary vehicle with it explains no more")
         bodies = partly
@@ -71,12 +72,6 @@ def select_flexible_body(search: ModelSearch) -> ModelSearch:
 def _usual_terms(structure: ModelStructure) -> tuple[str, ...]:
     """Return the terms about which the recordings decide that most vehicles have."""
     return tuple(term for term in structure.open_terms if TERMS[term].usual is not None and term not in structure.terms)
-
-
-def _without_usual_sizes(rich: ModelSearch, before: ModelSearch) -> ModelSearch:
-    """Fit a larger linear model than before without priors of its terms, and without those that are not needed."""
-    found, gains = leave_out_unneeded(rich.refit(rich.structure), before)
-    return found.recorded(gains, True, True)
 
 
 def fit_flexible_bodies(
@@ -130,9 +125,28 @@ def select_from_ordinary_vehicle(search: ModelSearch, plain: ModelStructure) -> 
         return search
     search.progress(Step("fitting an ordinary vehicle with every usual term"))
     flexible = tuple(name for name in search.selected if name in FLEXIBLE_BODIES)
-    found = fit_usual_terms(search, plain.with_terms((*plain.terms, *flexible, *terms)))
+    return select_beside_usual_terms(search, plain.with_terms((*plain.terms, *flexible, *terms)))
+
+
+def select_beside_usual_terms(search: ModelSearch, rich: ModelStructure) -> ModelSearch:
+    """Return the search from an ordinary vehicle with some terms, without those not needed, and with further ones beside them.
+
+    Parameters
+    ----------
+    search
+        The present model and its fit.
+    rich
+        Nonlinear, with all these terms.
+
+    Returns
+    -------
+    ModelSearch
+        Model and fit as given where that vehicle explains no more.
+    """
+    found = fit_usual_terms(search, rich)
     if found is None or search.leaves_misfit(found.fit, MISFIT_LEFT):
         against = "together they do not explain what the model so far leaves"
+        terms = [term for term in rich.terms if TERMS[term].usual is not None]
         return search.recorded(dict.fromkeys(terms, 0.0), True, False, against)
     found = _without_unneeded(found)
     return select_terms_beside(found)

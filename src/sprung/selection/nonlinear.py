@@ -13,7 +13,11 @@ from functools import partial
 from sprung.progress import Step
 from sprung.selection.contact import from_contact, is_likelier
 from sprung.selection.error_budget import MISFIT_LEFT, MISFIT_LEFT_AT_FIRST
-from sprung.selection.from_ordinary_vehicle import fit_flexible_bodies, select_from_ordinary_vehicle
+from sprung.selection.from_ordinary_vehicle import (
+    fit_flexible_bodies,
+    select_beside_usual_terms,
+    select_from_ordinary_vehicle,
+)
 from sprung.selection.linear_terms import FLEXIBLE_BODIES
 from sprung.selection.scoring import score_terms
 from sprung.selection.search import ModelSearch
@@ -65,6 +69,12 @@ def select_nonlinear_terms(search: ModelSearch, plain: ModelStructure) -> ModelS
         best = found if is_result and is_likelier(found, best) else best
         if best is not search and not best.lacks_something:
             break
+    for structure in _without_counterparts(best, plain) if best is not search else ():
+        if not best.is_overdispersed or best.is_misfit_large:
+            break
+        found = select_beside_usual_terms(replace(search, steps=steps), structure)
+        steps = found.steps
+        best = found if is_likelier(found, best) else best
     if best is search:
         return replace(search, steps=steps)
     beside = ", ".join(term for term in best.selected if not TERMS[term].is_linear or term not in search.selected)
@@ -101,6 +111,21 @@ def _searches(
         yield partial(_with_usual_terms, body, plain)
     if search.is_misfit_large or (search.lacks_something and refused):
         yield partial(_from_likeliest_beginning, bases, terms)
+
+
+def _without_counterparts(search: ModelSearch, plain: ModelStructure) -> list[ModelStructure]:
+    """Return a nonlinear model without each of the kinds of rubber in it that move as another one does.
+
+    Beside each other they lead to second optima: one of them may be one too many.
+    """
+    rubber = {term: TERMS[term].counterpart for term in search.selected if TERMS[term].is_linear}
+    alike = {one for term, other in rubber.items() if other in rubber for one in (term, other)}
+    smaller = [search.without(term) for term in search.selected if term in alike]
+    return [
+        plain.with_terms((*plain.terms, *(term for term in one.terms if term not in plain.terms)))
+        for one in smaller
+        if one.is_nonlinear
+    ]
 
 
 def _with_usual_terms(base: ModelSearch, plain: ModelStructure, so_far: ModelSearch) -> ModelSearch:
