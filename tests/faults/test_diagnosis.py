@@ -303,7 +303,7 @@ def test_a_load_that_lies_elsewhere_is_named_and_doubted() -> None:
     loads = tuple(stated if one.name == "ballast" else one for one in CLEAN.loads)
     result = sprung.identify(replace(CLEAN, loads=loads))
     assert said(result) == [("load-position", "load 'ballast'")]
-    assert "item 1 seems to lie 20 cm further to the left" in result.faults[0].what
+    assert "item 1 lies 20 cm further to the left" in result.faults[0].what
     assert result.verdict.state == "doubtful"
     assert result.faults[0].what in result.verdict.reasons
 

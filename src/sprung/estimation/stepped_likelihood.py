@@ -21,9 +21,6 @@ _STATE_STEPS, _STATE_GAIN = 20, 1e-2
 """Gauss-Newton steps of initial states alone, at the most, and gain in twice the log-likelihood below which they end."""
 
 
-_TOLD = 1e-3
-"""Part of the own information of an initial state that the others must leave to a direction of them for its gain to be told."""
-
 _MOSTLY = 0.8
 """Part of the expected gain that initial states promise, from which a loss is taken for theirs."""
 
@@ -190,9 +187,6 @@ class TimeSteppingAt:
             information[:, parameters:, parameters:] / (scale[:, :, None] * scale[:, None, :])
         )
         along = np.einsum("dij,di->dj", vectors, gradient[:, parameters:] / scale)
-        # Forces are solved for to a part of their size: along what is hardly determined, what a filter remembers say, the
-        # rest of a gradient would promise a gain that no step brings.
-        along = np.where(eigenvalues > _TOLD, along, 0.0)
         return np.stack([eigenvalues.ravel(), along.ravel() ** 2])
 
     @cached_property

@@ -116,7 +116,7 @@ def most_likely(base: CandidateFit, progress: Progress = silent) -> tuple[Hypoth
             return _with_rival(base, best, ranked), fits
     left, more = (np.inf, 0) if is_near else _left_by_flexible_body(base)
     fits += more
-    if left < _WHOLLY * base.misfit:
+    if left == 0:
         return None, fits
     best = None
     for hypotheses, made in _groups(base, deletions, progress):
