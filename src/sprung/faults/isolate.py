@@ -138,7 +138,7 @@ def _left_by_flexible_body(base: CandidateFit) -> tuple[float, int]:
     No sensor of such a body moves as the other ones say it should, which two exchanged ones seem to explain.
     """
     search = ModelSearch(base.structure, base.fit, base.decays)
-    if not search.is_misfit_large:
+    if not search.is_misfit_large or {*FLEXIBLE_BODIES} & {*base.structure.terms}:
         return np.inf, 0
     bodies = fit_flexible_bodies(search, FLEXIBLE_BODIES).values()
     tables = [residual_table(base.recordings, base.decays, body.fit) for body in bodies]
