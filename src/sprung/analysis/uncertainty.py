@@ -41,7 +41,7 @@ def _with_absent_refinements(search: ModelSearch, statistics: FitStatistics) -> 
     Its absence is no knowledge: it may have its usual size.
     """
     structure = search.structure
-    absent = [term for term in search.open_terms(tuple(TERMS)) if TERMS[term].refines and TERMS[term].is_linear]
+    absent = [term for term in search.open_terms(tuple(TERMS)) if TERMS[term].usually_refines and TERMS[term].is_linear]
     usual = {
         name: value
         for term in absent

@@ -105,6 +105,11 @@ class ModelTerm:
         return REFINED.get(self.name, "")
 
     @property
+    def usually_refines(self) -> bool:
+        """Whether most vehicles that have the term which it refines have it as well, as a mount has its damping."""
+        return bool(self.refines) and self.usual is not None
+
+    @property
     def adds_coordinates(self) -> bool:
         """Whether a vehicle with it moves in more coordinates than the paper's."""
         return len(coordinates(self.parameters("shared"))) > len(COORDINATES)
