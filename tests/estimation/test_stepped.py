@@ -298,10 +298,13 @@ def test_windows_of_time_add_up(decays: tuple[FreeDecay, ...], plain: ModelStruc
     assert found.disagreement_in_time < 2
 
 
-def test_readings_follow_the_corner_of_a_low_pass(
+def test_readings_follow_all_unknowns_behind_a_low_pass(
     decays: tuple[FreeDecay, ...], plain: ModelStructure, optimum: FitResult
 ) -> None:
-    """What is left of the records, against differences: with what the low-pass remembers, and whatever is fitted so far."""
+    """What is left of the records, against differences: with what the low-pass remembers, and whatever is fitted so far.
+
+    Initial velocities of wheels excite motions that it hardly passes, and of which it sees more than the samples do.
+    """
     larger = plain.with_terms(("rebound",))
     begun = fit_nonlinear(
         decays,
@@ -314,19 +317,27 @@ def test_readings_follow_the_corner_of_a_low_pass(
         most=0,
         low_pass=LowPass(90.0, 4),
     )
-    at, position = begun.iterate.at, begun.names.index(LOW_PASS_CORNER)
-    assert isinstance(at, TimeSteppingAt)
+    assert isinstance(begun.iterate.at, TimeSteppingAt)
     assert begun.names[-1] == LOW_PASS_CORNER
     assert begun.parameters[LOW_PASS_CORNER] == pytest.approx(96.0)
     assert is_of_sensor(LOW_PASS_CORNER)
     assert parameter_of(LOW_PASS_CORNER).unit == "Hz"
-    found = at.stepped.products[:, :, position, -1]
-    sums = []
-    for moved in (-0.01, 0.01):
-        values = at.values.copy()
-        values[position] += moved
-        sums.append(at.objective.at_states(values, at.weights, at.stepped.begin).residual_sums)
-    np.testing.assert_allclose(found, (sums[0] - sums[1]) / 0.04, rtol=1e-4, atol=1e-6 * np.abs(found).max())
+    finer = replace(begun.iterate.at.objective, longest_step=0.5 * begun.iterate.at.objective.longest_step)
+    assert finer.every > 1
+    at = finer.at_states(begun.iterate.at.values, begun.iterate.at.weights, begun.iterate.at.stepped.begin)
+    parameters = len(at.values)
+    corner, damping, wheel = begun.names.index(LOW_PASS_CORNER), begun.names.index("c_sf"), parameters + 10
+    for unknown, size in ((corner, 0.01), (damping, 0.1), (wheel, 1e-5)):
+        found = at.stepped.products[:, :, unknown, -1]
+        change = np.zeros(parameters + at.stepped.begin.shape[1])
+        change[unknown] = size
+        of_values, of_states = np.split(change, [parameters])
+        sums = [
+            at.objective.at_states(at.values + side * of_values, at.weights, at.stepped.begin + side * of_states)
+            for side in (-1.0, 1.0)
+        ]
+        difference = (sums[0].residual_sums - sums[1].residual_sums) / (4 * size)
+        np.testing.assert_allclose(found, difference, rtol=1e-4, atol=2e-5 * np.abs(found).max())
 
 
 def test_a_step_gains_what_is_expected_of_it_where_initial_states_are_not_at_their_maximum(
@@ -344,7 +355,7 @@ def test_a_step_gains_what_is_expected_of_it_where_initial_states_are_not_at_the
     )
     step, expected = begun.problem.normal_equations(begun.iterate).step()
     _, gain = begun.problem.trial(begun.iterate, step)
-    of_parameters = begun.problem.normal_equations(begun.iterate)._replace(eliminated=np.zeros((2, 0))).step()[1]
+    of_parameters = begun.problem.normal_equations(begun.iterate)._replace(eliminated=0.0).step()[1]
     assert of_parameters < 0.5 * expected
     assert gain == pytest.approx(expected, rel=0.3)
 

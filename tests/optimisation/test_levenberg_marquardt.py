@@ -32,7 +32,7 @@ class Residuals(NamedTuple):
         matrix = np.array([[1.0, 2j], [0.5, 1.0], [1j, 3.0]]) * self.scale
         return matrix @ (x - np.array([2 + 1j, -1.0])), matrix
 
-    def normal_equations(self, point: Array) -> NormalEquations:
+    def normal_equations(self, point: Array, _damping: float) -> NormalEquations:
         values, jacobian = self.residuals(point)
         information = jacobian.conj().T @ jacobian
         scaling = np.diag(np.maximum(np.diag(information).real, 1e-12))
@@ -47,7 +47,7 @@ class Residuals(NamedTuple):
 class Wall(NamedTuple):
     """A slope that ends at a wall: beyond x = 1 nothing exists."""
 
-    def normal_equations(self, point: Real) -> NormalEquations:
+    def normal_equations(self, point: Real, _damping: float) -> NormalEquations:
         del point
         return NormalEquations(np.eye(1), np.ones(1), np.eye(1), np.eye(1))
 
@@ -58,7 +58,7 @@ class Wall(NamedTuple):
 class Cliff(NamedTuple):
     """Nothing exists but the start."""
 
-    def normal_equations(self, point: Real) -> NormalEquations:
+    def normal_equations(self, point: Real, _damping: float) -> NormalEquations:
         del point
         return NormalEquations(np.eye(1), np.full(1, 1e6), np.eye(1), np.eye(1))
 
@@ -71,7 +71,7 @@ class Promising(NamedTuple):
 
     brings: float
 
-    def normal_equations(self, point: Real) -> NormalEquations:
+    def normal_equations(self, point: Real, _damping: float) -> NormalEquations:
         del point
         return NormalEquations(np.eye(1), np.ones(1), np.eye(1), np.eye(1))
 
@@ -82,9 +82,9 @@ class Promising(NamedTuple):
 class Lagging(NamedTuple):
     """Twice the log-likelihood -x² - f(y)², where y is eliminated, f(y) = arctan y: undamped steps beyond 1.39 diverge."""
 
-    def normal_equations(self, point: Real) -> NormalEquations:
-        eliminated = np.array([[1.0], [np.arctan(point[1]) ** 2]])
-        return NormalEquations(np.eye(1), -point[:1], np.eye(1), np.eye(1), eliminated)
+    def normal_equations(self, point: Real, damping: float) -> NormalEquations:
+        gain = float(np.arctan(point[1]) ** 2 / (1 + damping))
+        return NormalEquations(np.eye(1), -point[:1], np.eye(1), np.eye(1), gain)
 
     def trial(self, point: Real, step: Real, damping: float) -> tuple[Real, float]:
         own = -np.arctan(point[1]) * (1 + point[1] ** 2) / (1 + damping)
@@ -175,7 +175,7 @@ class Scripted:
     def __init__(self, expected: list[float], gained: list[float]) -> None:
         self.expected, self.gained = expected, gained
 
-    def normal_equations(self, point: int) -> NormalEquations:
+    def normal_equations(self, point: int, _damping: float) -> NormalEquations:
         one = np.ones((1, 1))
         return NormalEquations(one, np.array([self.expected[point] ** 0.5]), one, one)
 
@@ -207,7 +207,7 @@ class Bend(NamedTuple):
 
     tried: list[float]
 
-    def normal_equations(self, point: Real) -> NormalEquations:
+    def normal_equations(self, point: Real, _damping: float) -> NormalEquations:
         x = point[0]
         gradient = -x if abs(x) < 1 else -2 * x**3
         return NormalEquations(np.full((1, 1), 1e-3 if abs(x) > 1 else 1.0), np.full(1, gradient), np.eye(1), np.eye(1))

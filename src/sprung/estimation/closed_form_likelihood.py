@@ -17,7 +17,6 @@ from sprung.estimation.modal_solution import ModalSolution, differentiate_modes,
 from sprung.estimation.objective import ObjectiveAt
 from sprung.estimation.projected_response import ExponentialSums, ProjectedResponse
 from sprung.estimation.records import in_order
-from sprung.optimisation import NONE_ELIMINATED
 from sprung.vibration import exponentials, real_product
 
 if TYPE_CHECKING:
@@ -52,7 +51,6 @@ class ClosedFormAt:
     sums: tuple[ExponentialSums, ...]
 
     is_reversible = True
-    eliminated = NONE_ELIMINATED
     by_window = None
     coupling = None
 
@@ -64,6 +62,10 @@ class ClosedFormAt:
     def reweighted(self, weights: Real) -> ClosedFormAt:
         """Return the likelihood with other weights, its sums over the samples being the same."""
         return replace(self, weights=weights)
+
+    def damped(self, _damping: float, /) -> tuple[Real, Real, float]:
+        """Return information and gradient, whatever `_damping`: what is eliminated is at its maximum."""
+        return self.information, self.gradient, 0.0
 
     def moved(self, values: Real, _damping: float = 0.0, /) -> ObjectiveAt:
         """Return the likelihood at other parameter values, SI, shape (parameter,); no step of states has any `_damping`."""

@@ -14,7 +14,6 @@ from sprung.estimation.forced_response import ForcedResponse
 from sprung.estimation.objective import NoiseCoupling
 from sprung.estimation.spectral_lines import SpectralLines, lines_of
 from sprung.estimation.starts import VehicleSize
-from sprung.optimisation import NONE_ELIMINATED
 from sprung.preprocess import FreeDecay
 from sprung.vehicle import LinearModel, PadInputs, Readout, Sensor, Wheel
 
@@ -150,13 +149,16 @@ class ForcedAt:
     responses: tuple[tuple[ForcedResponse, ...], ...]
 
     is_reversible = True
-    eliminated = NONE_ELIMINATED
     by_window = None
     modal = None
 
     def reweighted(self, weights: Real) -> ForcedAt:
         """Return the likelihood with other weights, the response being the same."""
         return replace(self, weights=weights)
+
+    def damped(self, _damping: float, /) -> tuple[Real, Real, float]:
+        """Return information and gradient, whatever `_damping`: what is eliminated is at its maximum."""
+        return self.information, self.gradient, 0.0
 
     def moved(self, values: Real, _damping: float = 0.0, /) -> ForcedAt:
         """Return the likelihood at other parameter values, SI, shape (parameter,)."""

@@ -13,7 +13,6 @@ from sprung.estimation.closed_form import ClosedFormObjective
 from sprung.estimation.forced import ForcedObjective
 from sprung.estimation.objective import LinearObjective, NoiseCoupling, ObjectiveAt
 from sprung.estimation.starts import VehicleSize
-from sprung.optimisation import NONE_ELIMINATED
 from sprung.preprocess import FreeDecay
 from sprung.vehicle import LinearModel, Readout, Sensor
 
@@ -134,7 +133,6 @@ class JointAt:
     parts: tuple[ObjectiveAt, ObjectiveAt]
 
     is_reversible = True
-    eliminated = NONE_ELIMINATED
     by_window = None
     modal = None
 
@@ -152,6 +150,10 @@ class JointAt:
         """Return the likelihood with other weights."""
         free, driven = (part.reweighted(weights) for part in self.parts)
         return replace(self, parts=(free, driven))
+
+    def damped(self, _damping: float, /) -> tuple[Real, Real, float]:
+        """Return information and gradient, whatever `_damping`: what is eliminated is at its maximum."""
+        return self.information, self.gradient, 0.0
 
     def moved(self, values: Real, _damping: float = 0.0, /) -> JointAt:
         """Return the likelihood at other parameter values, SI, shape (parameter,)."""

@@ -17,7 +17,6 @@ from scipy.linalg import expm
 from sprung.estimation.objective import Objective, ObjectiveAt
 from sprung.estimation.projected_response import initial_state_prior_std
 from sprung.estimation.records import channel_rate_ratios
-from sprung.optimisation import NONE_ELIMINATED
 from sprung.preprocess import FreeDecay
 from sprung.vehicle import LinearModel, Readout, affine_response, highest_derivatives, state_matrix
 
@@ -52,7 +51,6 @@ class MatrixExponentialAt:
     weights: Real
 
     is_reversible = True
-    eliminated = NONE_ELIMINATED
     by_window = None
     coupling = None
     modal = None
@@ -60,6 +58,10 @@ class MatrixExponentialAt:
     def reweighted(self, weights: Real) -> MatrixExponentialAt:
         """Return the likelihood with other weights."""
         return replace(self, weights=weights)
+
+    def damped(self, _damping: float, /) -> tuple[Real, Real, float]:
+        """Return information and gradient, whatever `_damping`: what is eliminated is at its maximum."""
+        return self.information, self.gradient, 0.0
 
     def moved(self, values: Real, _damping: float = 0.0, /) -> ObjectiveAt:
         """Return the likelihood at other parameter values, SI, shape (parameter,)."""

@@ -139,13 +139,6 @@ class ObjectiveAt(Protocol):
         """Number of eliminated unknowns that each channel determines, shape (channel,)."""
 
     @property
-    def eliminated(self) -> Real:
-        """Eigenvalues and squared gradients of eliminated unknowns, as in `NormalEquations`, shape (2, unknown).
-
-        Of those alone that are not at their maximum already.
-        """
-
-    @property
     def coupling(self) -> NoiseCoupling | None:
         """How the noise of channels mixes in their residuals; None where eliminated unknowns are few beside the samples."""
 
@@ -187,10 +180,17 @@ class ObjectiveAt(Protocol):
     def reweighted(self, weights: Real) -> Self:
         """Return the likelihood with other weights; what does not depend on them is not computed again."""
 
+    def damped(self, damping: float, /) -> tuple[Real, Real, float]:
+        """Return information and gradient of the parameters for a step, and what eliminated unknowns gain by theirs.
+
+        Where initial states are not eliminated exactly, they follow the parameters and step towards their maximum with so much
+        damping.
+        """
+
     def moved(self, values: Real, damping: float = 0.0, /) -> ObjectiveAt:
         """Return the likelihood at other parameter values.
 
-        Where initial states are not eliminated exactly they are predicted, with so much damping of their own step.
+        Where initial states are not eliminated exactly they are predicted, with so much damping.
         """
 
     def with_optimal_states(self) -> ObjectiveAt:

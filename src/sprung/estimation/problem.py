@@ -306,11 +306,12 @@ class EstimationProblem:
         basis = null_space * self.priors.coordinates.derivatives(iterate.u)[:, None]
         return gradients @ basis, basis.T @ informations @ basis
 
-    def normal_equations(self, iterate: Iterate) -> NormalEquations:
-        """Return how twice the log-likelihood rises from an iterate."""
-        equations = identifiable_equations(*self.system(iterate))
-        eigenvalues, squares = iterate.at.eliminated
-        return equations._replace(eliminated=np.stack([eigenvalues, squares / self.overdispersion]))
+    def normal_equations(self, iterate: Iterate, damping: float = 0.0) -> NormalEquations:
+        """Return how twice the log-likelihood rises from an iterate, with so much damping of eliminated unknowns."""
+        information, gradient, gain = iterate.at.damped(damping)
+        less = self.overdispersion
+        equations = identifiable_equations(*self.joint_system(iterate, information / less, gradient / less))
+        return equations._replace(eliminated=gain / less)
 
     def trial(self, iterate: Iterate, step: Real, damping: float = 0.0) -> tuple[Iterate, float]:
         """Return the iterate a step of the coordinates away, and what twice the log-likelihood gains."""

@@ -72,10 +72,9 @@ class TimeSteppingAt:
         information, gradient = self._normal_equations
         parameters = len(self.values)
         change = values - self.values
-        own = information[:, parameters:, parameters:]
+        own = self._damped(damping)[:, parameters:, parameters:]
         following = -solve_normal_equations(own, information[:, parameters:, :parameters] @ change[:, None])[:, :, 0]
-        damped = own + damping * own * np.eye(own.shape[1])
-        step = solve_normal_equations(damped, gradient[:, parameters:, None])[:, :, 0]
+        step = solve_normal_equations(own, gradient[:, parameters:, None])[:, :, 0]
         whole = self._moved_by(values, following + step)
         if not whole._cost > self._cost:
             return whole
@@ -144,6 +143,25 @@ class TimeSteppingAt:
         gradient[:, parameters:] -= self.stepped.begin * precision
         return information, gradient
 
+    def _damped(self, damping: float) -> Real:
+        """Information of parameters and initial states, that of each state alone increased by a part of it."""
+        information, parameters = self._normal_equations[0], len(self.values)
+        is_state = np.arange(information.shape[1]) >= parameters
+        return information * (1.0 + damping * np.diag(is_state))
+
+    def damped(self, damping: float, /) -> tuple[Real, Real, float]:
+        """Return information and gradient of the parameters as initial states follow with a damping, and what these gain."""
+        information, (_, gradient), parameters = self._damped(damping), self._normal_equations, len(self.values)
+        visible = self.objective.visible_changes(self.values)
+        of_parameters, reduced, _ = eliminate(information, gradient, parameters)
+        of_states = gradient[:, parameters:]
+        step = solve_normal_equations(information[:, parameters:, parameters:], of_states[:, :, None])[:, :, 0]
+        return (
+            visible.T @ of_parameters.sum(axis=0) @ visible,
+            reduced.sum(axis=0) @ visible,
+            float(np.sum(of_states * step)),
+        )
+
     @cached_property
     def _eliminated(self) -> tuple[Real, Real, Real]:
         """Information and gradient of each drop without its initial state, and how that follows the parameters."""
@@ -177,17 +195,6 @@ class TimeSteppingAt:
     def information(self) -> Real:
         """Fisher information of the parameters, shape (parameter, parameter)."""
         return np.asarray(self.by_drop[1].sum(axis=0))
-
-    @cached_property
-    def eliminated(self) -> Real:
-        """Eigenvalues and squared gradients of the initial states, as in `NormalEquations`, shape (2, drop · state)."""
-        (information, gradient), parameters = self._normal_equations, len(self.values)
-        scale = np.sqrt(np.diagonal(information, axis1=1, axis2=2)[:, parameters:])
-        eigenvalues, vectors = np.linalg.eigh(
-            information[:, parameters:, parameters:] / (scale[:, :, None] * scale[:, None, :])
-        )
-        along = np.einsum("dij,di->dj", vectors, gradient[:, parameters:] / scale)
-        return np.stack([eigenvalues.ravel(), along.ravel() ** 2])
 
     @cached_property
     def leverage(self) -> Real:

@@ -127,8 +127,12 @@ class SteppedMotion:
 
     def _behind(self, low_pass: SampledLowPass, drop: int) -> Real:
         """Return what the sensors read of a drop behind a low-pass, shape (channel, time)."""
-        passed = low_pass.at(self._of_sample).filtered(self._before_low_pass[drop], axis=-1)
-        return passed[:, :: self._of_sample]
+        return self._passed(low_pass, self._before_low_pass[drop], axis=-1)
+
+    def _passed(self, low_pass: SampledLowPass, readings: Real, axis: int) -> Real:
+        """Return samples of readings behind a low-pass, along an axis."""
+        passed = low_pass.at(self._of_sample).filtered(readings, axis)
+        return np.moveaxis(np.moveaxis(passed, axis, 0)[:: self._of_sample], 0, axis)
 
     def _differentiate_by_corner(self, drop: int, corner: float) -> Real:
         """Differentiate what the records of a drop show by the corner: of the motion, and of what the low-pass remembers.
@@ -216,8 +220,10 @@ class SteppedMotion:
             units = np.eye(outputs.shape[2])[objective.angles]
             angles = np.broadcast_to(units, (len(outputs), *units.shape))
             outputs = np.concatenate([outputs, angles], axis=1)
-        of_drop, starts, transitions = differentiate_motions(self.stepper, self.trajectory, outputs, objective.every)
-        at_samples = self._inputs(objective.every)
+        of_drop, starts, transitions = differentiate_motions(
+            self.stepper, self.trajectory, outputs, objective.every, self._of_sample
+        )
+        at_readings = self._inputs(objective.every // self._of_sample)
         columns = len(self.values) + starts.shape[2] + 1
         products = np.empty((_WINDOWS, *objective.channel_weights.shape, columns, columns))
 
@@ -225,7 +231,7 @@ class SteppedMotion:
             """Fill in the products of one drop in each window."""
             with np.errstate(over="ignore", invalid="ignore"):  # of this thread
                 same = of_same_motion[objective.kind[drop]]
-                derivatives = self._derivatives_of_drop(at_samples[:, drop], same, of_drop(drop), drop)
+                derivatives = self._derivatives_of_drop(at_readings[:, drop], same, of_drop(drop), drop)
                 for window, own in zip(products, self._windows(derivatives, drop), strict=True):
                     np.matmul(np.swapaxes(own, 1, 2), own, out=window[drop])
 
@@ -234,13 +240,13 @@ class SteppedMotion:
             list(pool.map(fill, range(len(objective.decays))))
         return products, starts, transitions
 
-    def _derivatives_of_drop(self, at_samples: Real, same: Real, moved: Real, drop: int) -> Real:
+    def _derivatives_of_drop(self, at_readings: Real, same: Real, moved: Real, drop: int) -> Real:
         """Return how the readings of one drop follow the unknowns, shape (time, channel, unknown).
 
         Parameters
         ----------
-        at_samples
-            {X, Ẋ, u, 1} at each sample, shape (time, input).
+        at_readings
+            {X, Ẋ, u, 1} at each reading, shape (time, input).
         same
             What each parameter changes in the readings of the same motion, shape (input, channel, parameter).
         moved
@@ -250,15 +256,16 @@ class SteppedMotion:
         """
         objective, parameters = self.objective, len(self.values)
         samples, channels, shared = objective.samples[drop], len(objective.energy), objective.sensors.shared
-        moved, inputs = moved[:samples], at_samples[:samples]
+        read = self._of_sample * (samples - 1) + 1
+        moved, inputs = moved[:read], at_readings[:read]
         if self._gravity is not None:
             moved[:, :channels] -= self._gravity * (inputs[:, None, objective.angles] @ moved[:, channels:])
         # The unknowns of the sensors come between the parameters of the model and the initial states.
-        readings = np.empty((samples, channels, moved.shape[2] + parameters - shared))
-        readings[..., :parameters] = (inputs @ same.reshape(len(same), -1)).reshape(samples, channels, parameters)
+        readings = np.empty((read, channels, moved.shape[2] + parameters - shared))
+        readings[..., :parameters] = (inputs @ same.reshape(len(same), -1)).reshape(read, channels, parameters)
         readings[..., :shared] += moved[:, :channels, :shared]
         readings[..., parameters:] = moved[:, :channels, shared:]
-        readings = self._low_passes[drop].filtered(readings, axis=0)
+        readings = self._passed(self._low_passes[drop], readings, axis=0)
         for channel, position in objective.sensors.delay_positions:
             readings[:, channel, position] = -np.gradient(self._readings[drop, channel, :samples], edge_order=2)
             readings[:, channel, position] *= objective.decays[drop].rate

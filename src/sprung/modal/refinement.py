@@ -70,7 +70,7 @@ class ModalProblem(NamedTuple):
     decays: Decays
     only: int | None
 
-    def normal_equations(self, point: ModalObjective) -> NormalEquations:
+    def normal_equations(self, point: ModalObjective, _damping: float = 0.0) -> NormalEquations:
         """Return information and gradient in what is free, each direction scaled to an information of one."""
         free = point.free if self.only is None else point.pole_of(self.only)
         information = point.information[np.ix_(free, free)]

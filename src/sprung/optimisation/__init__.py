@@ -1,7 +1,6 @@
 """Maximisation of likelihoods: one method for every fit of the program."""
 
 from sprung.optimisation.levenberg_marquardt import (
-    NONE_ELIMINATED,
     Maximisable,
     Maximum,
     NormalEquations,
@@ -9,7 +8,6 @@ from sprung.optimisation.levenberg_marquardt import (
 )
 
 __all__ = [
-    "NONE_ELIMINATED",
     "Maximisable",
     "Maximum",
     "NormalEquations",

@@ -46,8 +46,10 @@ _CRAWL, _NEAR = 0.05, 1.0
 
 _FIRM = 1.0  # damping above which a small gain says nothing of what is left to gain
 
-NONE_ELIMINATED: Real = np.zeros((2, 0))
-"""Eliminated unknowns where there are none, or where all are at their maximum already."""
+_OF_ELIMINATED = 1e-5
+"""Damping of eliminated unknowns at the least, as a part of each one's own information: along combinations of them of which
+less is known, they would go farther than derivatives tell.
+"""
 
 Point = TypeVar("Point")
 
@@ -66,27 +68,23 @@ class NormalEquations(NamedTuple):
     directions
         In the coordinates, as columns, shape (coordinate, direction).
     eliminated
-        Of unknowns that are eliminated and that every step moves towards their maximum, too, in units of their own information:
-        eigenvalues of the information, and squared components of the gradient along its eigenvectors; shape (2, unknown).
+        Gain of unknowns that are eliminated and that every step moves towards their maximum, too.
     """
 
     information: Array
     gradient: Array
     scaling: Array
     directions: Array
-    eliminated: Real = NONE_ELIMINATED
+    eliminated: float = 0.0
 
-    def step(self, damping: float = 0.0, longest: float = np.inf, of_eliminated: float = 0.0) -> tuple[Array, float]:
+    def step(self, damping: float = 0.0, longest: float = np.inf) -> tuple[Array, float]:
         """Return a damped step in the coordinates, the Newton step without damping, and its expected gain.
 
         The gain is that of twice the log-likelihood. A coordinate that would go further than the `longest` is held back as by
-        information of its own, so that one of which hardly anything is known does not shorten the step of all others. Steps of
-        eliminated unknowns have a damping of their own, `of_eliminated`.
+        information of its own, so that one of which hardly anything is known does not shorten the step of all others.
         """
-        eigenvalues, squares = self.eliminated
-        their_gain = float(np.sum(squares / (eigenvalues + of_eliminated)))
         if not self.gradient.size:
-            return np.zeros(len(self.directions)), their_gain
+            return np.zeros(len(self.directions)), self.eliminated
         matrix = self.information + damping * self.scaling
         along = np.linalg.solve(matrix, self.gradient)
         for _ in range(_HELD_BACK):
@@ -98,20 +96,20 @@ class NormalEquations(NamedTuple):
             v = np.einsum("ij,ji->i", own, np.linalg.solve(matrix, own.T)).real
             matrix = matrix + own.T @ ((far[far > longest] / longest - 1) / v * own.T).T
             along = np.linalg.solve(matrix, self.gradient)
-        gain = float((along.conj() @ self.gradient).real) + their_gain
+        gain = float((along.conj() @ self.gradient).real) + self.eliminated
         return _limited(self.directions @ along, longest), gain
 
 
 class Maximisable(Protocol[Point]):
     """A log-likelihood that can be maximised."""
 
-    def normal_equations(self, point: Point, /) -> NormalEquations:
-        """Return how twice the log-likelihood rises from a point."""
+    def normal_equations(self, point: Point, damping: float, /) -> NormalEquations:
+        """Return how twice the log-likelihood rises from a point, with so much damping of eliminated unknowns."""
 
     def trial(self, point: Point, step: Array, damping: float, /) -> tuple[Point, float]:
         """Return the point a step (shape (coordinate,)) away, and the gain in twice the log-likelihood: -inf if it has none.
 
-        The damping is that of the steps of eliminated unknowns, which are part of it.
+        The damping is that of eliminated unknowns, which follow and step towards their maximum.
         """
 
 
@@ -171,7 +169,7 @@ def maximise(
     """
     point, before, idle = start, np.inf, 0
     for steps in range(most_steps):
-        equations = problem.normal_equations(point)
+        equations = problem.normal_equations(point, _OF_ELIMINATED)
         if stop is not None and stop(point, equations):
             return Maximum(point, steps, converged=False)
         # A damped step gains less than the Newton step: where it gains enough, there is no need of that one.
@@ -180,9 +178,8 @@ def maximise(
         found = _gaining_step(problem, point, equations, damping, longest_step, tolerance, cautious)
         if found is None:
             # Not even the shortest step gains: without noise rounding leaves no more.
-            return Maximum(
-                point, steps, converged=equations.step(_MOST_DAMPING, of_eliminated=_MOST_DAMPING)[1] < _STALLED
-            )
+            damped = problem.normal_equations(point, _MOST_DAMPING)
+            return Maximum(point, steps, converged=damped.step(_MOST_DAMPING)[1] < _STALLED)
         point, damping, gain, realised = found
         crawls = gain < _NEAR and realised < _CRAWL * gain
         idle = idle + 1 if realised < tolerance or crawls else 0
@@ -214,8 +211,10 @@ def _gaining_step(
     first, raised = True, _EASED if cautious else _RAISED
     while damping < _MOST_DAMPING:
         # They follow the others, and are nearly linear: their whole step is shortened only where it loses.
-        of_eliminated = 0.0 if first else damping
-        step, expected = equations.step(damping, longest, of_eliminated)
+        of_eliminated = _OF_ELIMINATED if first else max(_OF_ELIMINATED, damping)
+        if not first:
+            equations = problem.normal_equations(point, of_eliminated)
+        step, expected = equations.step(damping, longest)
         if not first and expected < tolerance:
             return None
         tried, gain = problem.trial(point, step, of_eliminated)
@@ -226,7 +225,7 @@ def _gaining_step(
             following = _next_damping(damping, ratio, cautious) if first or not cautious else damping / _EASED
             return tried, following, max(expected, gain), gain
         if first and np.isfinite(gain):
-            back, _ = problem.normal_equations(tried).step(damping, longest)
+            back, _ = problem.normal_equations(tried, of_eliminated).step(damping, longest)
             second_point, further = problem.trial(tried, back, of_eliminated)
             if gain + further > 0:
                 return second_point, damping, max(expected, gain + further), gain + further

@@ -19,9 +19,9 @@ from sprung.selection.starts import fit_structure
 
 Real = NDArray[np.float64]
 
-_STEPPED = 1e-3
-"""Expected gain in log-likelihood at which a fit by time stepping has converged: a twentieth of a standard error, of which
-the last step leaves less. Forces are solved for to a part of their size, so the likelihood is no smoother."""
+_STEPPED = 4e-3
+"""Expected gain in log-likelihood at which a fit by time stepping has converged: a tenth of a standard error, of which the
+last step leaves less. Forces are solved for to a part of their size, so the likelihood is no smoother."""
 
 _SETTLED = 0.03
 """The same as a part of the overdispersion, of a model with errors: a sixth of a standard error."""

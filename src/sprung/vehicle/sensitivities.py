@@ -29,7 +29,7 @@ Index = NDArray[np.int64]
 
 
 def differentiate_motions(
-    stepper: Stepper, trajectory: Trajectory, outputs: Array, every: int
+    stepper: Stepper, trajectory: Trajectory, outputs: Array, every: int, of_sample: int = 1
 ) -> tuple[Callable[[int], Array], Array, Array]:
     """Differentiate motions and what is read of them by the parameters, the initial states and the initial memories.
 
@@ -44,11 +44,13 @@ def differentiate_motions(
         functions themselves is left to the caller.
     every
         Steps from one sample to the next.
+    of_sample
+        Readings from one sample to the next, of which `every` is a multiple.
 
     Returns
     -------
     outputs
-        Derivatives of the outputs of a drop, by its position, shape (sample, output, unknown), the unknowns in this order.
+        Derivatives of the outputs of a drop, by its position, shape (reading, output, unknown), the unknowns in this order.
     starts
         Those of state and memories at the start of each segment, shape (drop, segment, start, unknown).
     transitions
@@ -59,6 +61,7 @@ def differentiate_motions(
     Not finite where the motion is not.
     """
     number, length = segments_of(len(trajectory.states) - 1, every)
+    every //= of_sample
     with np.errstate(over="ignore", invalid="ignore"):
         motion, given, surplus = _cut(stepper, trajectory, number, length)
 
@@ -72,7 +75,7 @@ def differentiate_motions(
     with ThreadPoolExecutor(len(outputs)) as pool:
         readings, by_kind = zip(*pool.map(differentiate, range(len(outputs))), strict=True)
     ends, (kind, slot) = np.concatenate(by_kind), stepper.places
-    start, parameters, samples = ends.shape[-2], len(stepper.values), (len(trajectory.states) - 1) // every + 1
+    start, parameters, read = ends.shape[-2], len(stepper.values), (len(trajectory.states) - 1) // every + 1
     ends = ends.reshape(len(ends), -1, number, *ends.shape[2:])[kind, slot]
     starts = np.zeros_like(ends)
     starts[:, 0, :, parameters:] = np.eye(start)
@@ -87,7 +90,7 @@ def differentiate_motions(
         local = np.moveaxis(own, 2, 0).reshape(number, -1, own.shape[-1])
         whole = local[..., :start] @ starts[drop].astype(np.float32)
         whole[..., :parameters] += local[..., start:]
-        found: Array = whole.astype(np.float64).reshape(-1, outputs.shape[1], start + parameters)[:samples]
+        found: Array = whole.astype(np.float64).reshape(-1, outputs.shape[1], start + parameters)[:read]
         return found
 
     return of_drop, starts, ends[..., :start]
@@ -129,12 +132,12 @@ def _differentiate_segments(
     outputs
         Linear functions of {x, u}, shape (kind, output, state + row).
     every
-        Steps from one sample to the next.
+        Steps from one reading to the next.
 
     Returns
     -------
     readings
-        Outputs at each sample, shape (sample, kind, output, place, start + parameter).
+        Outputs at each reading, shape (reading, kind, output, place, start + parameter).
     ends
         State and memories at the end, shape (kind, place, start, start + parameter).
     """
