@@ -17,7 +17,7 @@ def test_signals_pass_it_as_its_response_says(order: int, frequency: float) -> N
     low_pass = LowPass(80.0, order)
     sampled = SampledLowPass.of(low_pass, 1000.0)
     time = np.arange(2000) / 1000
-    found = sampled.filtered(np.sin(2 * np.pi * frequency * time)[None], axis=1)[0]
+    found = sampled.filtered(np.sin(2 * np.pi * frequency * time)[None])[0]
     response = low_pass.response(np.array([2j * np.pi * frequency]))[0]
     expected = abs(response) * np.sin(2 * np.pi * frequency * (time + sampled.lag / 1000) + np.angle(response))
     # The numerator has one coefficient more than the order, by least squares up to 400 Hz: what is left falls with the order.
@@ -32,7 +32,7 @@ def test_slow_motions_come_later_by_what_is_left_of_its_delay(corner: float) -> 
     The numerator is fitted to 3e-4 of its response.
     """
     sampled, time = SampledLowPass.of(LowPass(corner, 4), RATE), np.arange(1000) / RATE
-    found = sampled.filtered(np.sin(2 * np.pi * time)[None], axis=1)[0]
+    found = sampled.filtered(np.sin(2 * np.pi * time)[None])[0]
     np.testing.assert_allclose(found[200:-20], np.sin(2 * np.pi * (time - sampled.remaining_delay))[200:-20], atol=5e-4)
     assert abs(sampled.remaining_delay) <= 0.5 / RATE
 
@@ -51,8 +51,8 @@ def test_what_it_remembers_of_earlier_motions_is_free() -> None:
 def test_a_signal_that_did_not_pass_it_may_be_given_the_same_freedom() -> None:
     passed, free = (SampledLowPass.of(LowPass(80.0, 4, passes_all), RATE) for passes_all in (False, True))
     signal = np.random.default_rng(5).standard_normal((2, 60))
-    np.testing.assert_array_equal(free.filtered(signal, axis=1)[:, : -free.lag], signal[:, : -free.lag])
-    np.testing.assert_array_equal(free.filtered(signal, axis=1)[:, -free.lag :], 0.0)
+    np.testing.assert_array_equal(free.filtered(signal)[:, : -free.lag], signal[:, : -free.lag])
+    np.testing.assert_array_equal(free.filtered(signal)[:, -free.lag :], 0.0)
     np.testing.assert_array_equal(free.free_signals(60), passed.free_signals(60))
     assert (free.lag, free.remaining_delay) == (passed.lag, 0.0)
 
@@ -61,7 +61,7 @@ def test_above_the_samples_it_does_nothing() -> None:
     signals = np.random.default_rng(1).standard_normal((2, 50))
     for low_pass in (None, LowPass(210.0, 4)):
         sampled = SampledLowPass.of(low_pass, RATE)
-        assert sampled.filtered(signals, axis=1) is signals
+        assert sampled.filtered(signals) is signals
         np.testing.assert_allclose(sampled.free_signals(50), np.full((50, 1), 50**-0.5))
 
 

@@ -113,9 +113,8 @@ def test_derivatives_are_those_of_the_steps_themselves(monkeypatch: pytest.Monke
     values = before.values
     trajectory = before.integrate(states, memories, steps)
     outputs = 22 + before.forces.number
-    found = np.stack(
-        [differentiate_motions(before, trajectory, np.eye(outputs)[None], 1)[0](0)], axis=1
-    )  # step, drop, output, unknown
+    of_drop = differentiate_motions(before, trajectory, np.eye(outputs)[None], 1)[0]
+    found = of_drop(0).transpose(2, 0, 1)[:, None]  # step, drop, output, unknown
     for unknown, value in enumerate(values):
         ends = []
         for side in (1, -1):

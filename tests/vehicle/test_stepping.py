@@ -234,7 +234,7 @@ def test_derivatives_are_those_of_the_steps_themselves(ground: bool, monkeypatch
     outputs = 14 + before.forces.number
     every_output = np.broadcast_to(np.eye(outputs), (2, outputs, outputs))
     of_drop, starts, _ = differentiate_motions(before, trajectory, every_output, 1)
-    found = np.stack([of_drop(drop) for drop in range(2)], axis=1)
+    found = np.stack([of_drop(drop).transpose(2, 0, 1) for drop in range(2)], axis=1)
     assert found.shape == (steps + 1, 2, outputs, len(names) + 22)
     number, length = segments_of(steps, 1)
     assert 1 < number < number * length

@@ -138,26 +138,23 @@ class SampledLowPass(NamedTuple):
             return np.ones(1), np.ones(1)
         return _transfer_function(self.low_pass, self.rate)
 
-    def filtered(self, signals: Real, axis: int) -> Real:
+    def filtered(self, signals: Real) -> Real:
         """Return signals behind the low-pass, which rested before at their first values; zero where they are not known.
 
         Parameters
         ----------
         signals
-            m/s², any shape.
-        axis
-            That of time.
+            m/s², shape (..., time).
         """
         if self.low_pass is None:
             return signals
-        along = np.moveaxis(signals, axis, 0)
+        known = signals.shape[-1] - self.lag
         if self.low_pass.passes_all:
-            return np.moveaxis(np.concatenate([along[: -self.lag or None], np.zeros_like(along[: self.lag])]), 0, axis)
+            return np.concatenate([signals[..., :known], np.zeros_like(signals[..., known:])], axis=-1)
         numerator, denominator = self.coefficients
-        before = np.multiply.outer(lfilter_zi(numerator, denominator), along[0])
-        later = np.asarray(lfilter(numerator, denominator, along, axis=0, zi=before)[0])
-        whole = np.concatenate([later[self.lag :], np.zeros_like(later[: self.lag])])
-        return np.moveaxis(whole, 0, axis)
+        before = lfilter_zi(numerator, denominator) * signals[..., :1]
+        later = np.asarray(lfilter(numerator, denominator, signals, axis=-1, zi=before)[0])
+        return np.concatenate([later[..., self.lag :], np.zeros_like(later[..., known:])], axis=-1)
 
     def free_signals(self, samples: int) -> Real:
         """Return what a record may show whatever the motion: an offset, and what the low-pass remembers of earlier motions.

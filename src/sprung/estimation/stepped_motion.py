@@ -127,12 +127,11 @@ class SteppedMotion:
 
     def _behind(self, low_pass: SampledLowPass, drop: int) -> Real:
         """Return what the sensors read of a drop behind a low-pass, shape (channel, time)."""
-        return self._passed(low_pass, self._before_low_pass[drop], axis=-1)
+        return self._passed(low_pass, self._before_low_pass[drop])
 
-    def _passed(self, low_pass: SampledLowPass, readings: Real, axis: int) -> Real:
-        """Return samples of readings behind a low-pass, along an axis."""
-        passed = low_pass.at(self._of_sample).filtered(readings, axis)
-        return np.moveaxis(np.moveaxis(passed, axis, 0)[:: self._of_sample], 0, axis)
+    def _passed(self, low_pass: SampledLowPass, readings: Real) -> Real:
+        """Return samples of readings behind a low-pass, shape (..., time)."""
+        return low_pass.at(self._of_sample).filtered(readings)[..., :: self._of_sample]
 
     def _differentiate_by_corner(self, drop: int, corner: float) -> Real:
         """Differentiate what the records of a drop show by the corner: of the motion, and of what the low-pass remembers.
@@ -214,7 +213,7 @@ class SteppedMotion:
         direct = [np.swapaxes(by_S, 0, 1) @ rows for rows in observed]
         for by_row, (_, slopes) in zip(direct, by_kind, strict=True):
             by_row[:shared] += objective.sensors.of_accelerations(S) @ slopes
-        of_same_motion = [np.ascontiguousarray(by_row.transpose(2, 1, 0)) for by_row in direct]
+        of_same_motion = [by_row.transpose(1, 0, 2) for by_row in direct]
         if self._gravity is not None:
             # Sensors that turn measure the less of gravity: their readings depend on pitch and roll.
             units = np.eye(outputs.shape[2])[objective.angles]
@@ -223,7 +222,7 @@ class SteppedMotion:
         of_drop, starts, transitions = differentiate_motions(
             self.stepper, self.trajectory, outputs, objective.every, self._of_sample
         )
-        at_readings = self._inputs(objective.every // self._of_sample)
+        at_readings = np.ascontiguousarray(self._inputs(objective.every // self._of_sample).transpose(1, 2, 0))
         columns = len(self.values) + starts.shape[2] + 1
         products = np.empty((_WINDOWS, *objective.channel_weights.shape, columns, columns))
 
@@ -231,9 +230,10 @@ class SteppedMotion:
             """Fill in the products of one drop in each window."""
             with np.errstate(over="ignore", invalid="ignore"):  # of this thread
                 same = of_same_motion[objective.kind[drop]]
-                derivatives = self._derivatives_of_drop(at_readings[:, drop], same, of_drop(drop), drop)
+                derivatives = self._derivatives_of_drop(at_readings[drop], same, of_drop(drop), drop)
                 for window, own in zip(products, self._windows(derivatives, drop), strict=True):
-                    np.matmul(np.swapaxes(own, 1, 2), own, out=window[drop])
+                    np.matmul(own, np.swapaxes(own, 1, 2), out=window[drop])
+                products[:, drop] *= objective.channel_weights[drop, :, None, None]
 
         # Each drop may have a processor of its own.
         with ThreadPoolExecutor(os.cpu_count()) as pool:
@@ -241,48 +241,51 @@ class SteppedMotion:
         return products, starts, transitions
 
     def _derivatives_of_drop(self, at_readings: Real, same: Real, moved: Real, drop: int) -> Real:
-        """Return how the readings of one drop follow the unknowns, shape (time, channel, unknown).
+        """Return how the readings of one drop follow the unknowns, and as the last its residual.
 
         Parameters
         ----------
         at_readings
-            {X, Ẋ, u, 1} at each reading, shape (time, input).
+            {X, Ẋ, u, 1} at each reading, shape (input, time).
         same
-            What each parameter changes in the readings of the same motion, shape (input, channel, parameter).
+            What each parameter changes in the readings of the same motion, shape (channel, parameter, input).
         moved
             What the unknowns change in the readings by the motion, from `differentiate_motions`.
         drop
             Its position.
+
+        Returns
+        -------
+        ndarray
+            Shape (channel, unknown + 1, time).
         """
         objective, parameters = self.objective, len(self.values)
         samples, channels, shared = objective.samples[drop], len(objective.energy), objective.sensors.shared
         read = self._of_sample * (samples - 1) + 1
-        moved, inputs = moved[:read], at_readings[:read]
+        moved, inputs = moved[..., :read], at_readings[:, :read]
         if self._gravity is not None:
-            moved[:, :channels] -= self._gravity * (inputs[:, None, objective.angles] @ moved[:, channels:])
+            turned = np.einsum("at,aut->ut", inputs[objective.angles], moved[channels:])
+            moved[:channels] -= self._gravity[:, :, None] * turned
         # The unknowns of the sensors come between the parameters of the model and the initial states.
-        readings = np.empty((read, channels, moved.shape[2] + parameters - shared))
-        readings[..., :parameters] = (inputs @ same.reshape(len(same), -1)).reshape(read, channels, parameters)
-        readings[..., :shared] += moved[:, :channels, :shared]
-        readings[..., parameters:] = moved[:, :channels, shared:]
-        readings = self._passed(self._low_passes[drop], readings, axis=0)
+        readings = np.empty((channels, moved.shape[1] + parameters - shared + 1, read))
+        readings[:, :parameters] = same @ inputs
+        readings[:, :shared] += moved[:channels, :shared]
+        readings[:, parameters:-1] = moved[:channels, shared:]
+        readings[:, -1] = 0.0
+        readings = np.ascontiguousarray(self._passed(self._low_passes[drop], readings))
         for channel, position in objective.sensors.delay_positions:
-            readings[:, channel, position] = -np.gradient(self._readings[drop, channel, :samples], edge_order=2)
-            readings[:, channel, position] *= objective.decays[drop].rate
+            readings[channel, position] = -np.gradient(self._readings[drop, channel, :samples], edge_order=2)
+            readings[channel, position] *= objective.decays[drop].rate
         if (of_corner := objective.sensors.corner_position) is not None:
-            readings[:, :, of_corner] = self._differentiate_by_corner(drop, float(self.values[of_corner])).T
-        readings[samples - objective.low_passes[drop].lag :] = 0.0
+            readings[:, of_corner] = self._differentiate_by_corner(drop, float(self.values[of_corner]))
+        readings[..., samples - objective.low_passes[drop].lag :] = 0.0
         free = self._free_signals[drop, :samples]
-        by_sample = readings.reshape(samples, -1)
-        by_sample -= free @ (free.T @ by_sample)
+        by_sample = readings.reshape(-1, samples)
+        by_sample -= (by_sample @ free) @ free.T
+        readings[:, -1] = self.residuals[drop, :, :samples]
         return readings
 
     def _windows(self, derivatives: Real, drop: int) -> list[Real]:
-        """Return derivatives of one drop, and its residual as the last, cut into windows, (channel, time, column) each."""
-        samples = self.objective.samples[drop]
-        weights = np.sqrt(self.objective.channel_weights[drop])[:, None]
-        columns = np.empty((len(weights), samples, derivatives.shape[2] + 1))
-        np.multiply(np.swapaxes(derivatives, 0, 1), weights[:, None], out=columns[..., :-1])
-        np.multiply(self.residuals[drop, :, :samples], weights, out=columns[..., -1])
+        """Return derivatives of one drop cut into windows of time, shape (channel, unknown + 1, time) each."""
         ends = (self.objective.decays[drop].rate * _FIRST_WINDOW * 2.0 ** np.arange(_WINDOWS - 1)).astype(np.int64)
-        return np.split(columns, np.minimum(ends, samples), axis=1)
+        return np.split(derivatives, np.minimum(ends, derivatives.shape[2]), axis=2)

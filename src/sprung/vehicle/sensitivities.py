@@ -50,7 +50,7 @@ def differentiate_motions(
     Returns
     -------
     outputs
-        Derivatives of the outputs of a drop, by its position, shape (reading, output, unknown), the unknowns in this order.
+        Derivatives of the outputs of a drop, by its position, shape (output, unknown, reading), the unknowns in this order.
     starts
         Those of state and memories at the start of each segment, shape (drop, segment, start, unknown).
     transitions
@@ -90,7 +90,8 @@ def differentiate_motions(
         local = np.moveaxis(own, 2, 0).reshape(number, -1, own.shape[-1])
         whole = local[..., :start] @ starts[drop].astype(np.float32)
         whole[..., :parameters] += local[..., start:]
-        found: Array = whole.astype(np.float64).reshape(-1, outputs.shape[1], start + parameters)[:read]
+        by_output = whole.reshape(number, -1, outputs.shape[1], start + parameters).transpose(2, 3, 0, 1)
+        found: Array = by_output.astype(np.float64, order="C").reshape(*by_output.shape[:2], -1)[..., :read]
         return found
 
     return of_drop, starts, ends[..., :start]
