@@ -44,6 +44,7 @@ from sprung.vehicle.force_laws import (
     ElementInput,
     ForceLaw,
 )
+from sprung.vehicle.segments import _is_promising
 
 Array = NDArray[np.float64]
 
@@ -418,3 +419,19 @@ def test_friction_slides_at_its_force_and_holds_at_its_stiffness() -> None:
     assert FRICTION.evaluate(p, far).force[0] == pytest.approx(100.0)
     near = ElementInput(*(np.array([value]) for value in (1e-7, 0.0, 1e-7, 0.0)))
     assert FRICTION.evaluate(p, near).force[0] == pytest.approx(2e5 * 1e-7, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("error", "previous", "promising"),
+    [
+        (0.5, np.inf, True),
+        (2.0, np.inf, False),
+        (1e-2, 1.0, True),
+        (0.9, 1.0, False),
+        (1e300, 1e-3, False),
+        (np.nan, 1.0, False),
+    ],
+)
+def test_passes_go_on_only_where_they_will_close_the_motions(error: float, previous: float, promising: bool) -> None:
+    """Also of a motion that runs away, the powers of which are no numbers."""
+    assert _is_promising(error, previous, 8) is promising

@@ -44,6 +44,10 @@ expected that no step brings."""
 _CRAWL, _NEAR = 0.05, 1.0
 """Part of the expected gain that is hardly anything where no more than so much is expected: one standard error."""
 
+_OF_SECOND_ORDER = 250.0
+"""How many times the tolerance eliminated unknowns may still gain, up to one standard error: where they are going is part of
+the gradient of the others, and what they leave is of second order. Some of them go on for long that records hardly show."""
+
 _FIRM = 1.0  # damping above which a small gain says nothing of what is left to gain
 
 _OF_ELIMINATED = 1e-5
@@ -98,6 +102,14 @@ class NormalEquations(NamedTuple):
             along = np.linalg.solve(matrix, self.gradient)
         gain = float((along.conj() @ self.gradient).real) + self.eliminated
         return _limited(self.directions @ along, longest), gain
+
+
+def _has_converged(equations: NormalEquations, damping: float, tolerance: float) -> bool:
+    """Whether less is left to gain than a tolerance, or little more by eliminated unknowns alone."""
+    if equations.eliminated >= max(tolerance, min(_OF_SECOND_ORDER * tolerance, _NEAR)):
+        return False
+    # A damped step gains less than the Newton step: where it gains enough, there is no need of that one.
+    return all(equations.step(of_step)[1] - equations.eliminated < tolerance for of_step in (damping, 0.0))
 
 
 class Maximisable(Protocol[Point]):
@@ -172,8 +184,7 @@ def maximise(
         equations = problem.normal_equations(point, _OF_ELIMINATED)
         if stop is not None and stop(point, equations):
             return Maximum(point, steps, converged=False)
-        # A damped step gains less than the Newton step: where it gains enough, there is no need of that one.
-        if equations.step(damping)[1] < tolerance and equations.step()[1] < tolerance:
+        if _has_converged(equations, damping, tolerance):
             return Maximum(point, steps, converged=True)
         found = _gaining_step(problem, point, equations, damping, longest_step, tolerance, cautious)
         if found is None:

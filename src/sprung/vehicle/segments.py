@@ -162,11 +162,21 @@ def integrate_near(
             moving = np.swapaxes(np.concatenate(np.swapaxes(by_drop(surplus[1:]), 0, 1), axis=1)[:, :steps], 0, 1)
             moving = np.concatenate([np.zeros_like(moving[:1]), moving])
             return Trajectory(whole[..., :state], whole[..., state:-1], memory, moving)
-        # Further passes reduce it more than this one did, as the motions come nearer; what the first one leaves says little.
-        if not (error < 1 if np.isinf(previous) else error * (error / previous) ** left <= _PROMISING):
+        if not _is_promising(error, previous, left):
             break
         starts = starts + changes
     return stepper.integrate(states, memories, steps, similar=near.forces)
+
+
+def _is_promising(error: float, previous: float, left: int) -> bool:
+    """Whether so many further passes will close the gaps that the last two left, as parts of the motions; inf before the first.
+
+    They reduce it more than the last one did, as the motions come nearer; what the first one leaves says little.
+    """
+    if np.isinf(previous):
+        return error < 1
+    # As logarithms: of a motion that runs away any power would be too large a number.
+    return bool(np.log(error) + left * np.log(error / previous) <= np.log(_PROMISING))
 
 
 def _learnt(transitions: Array, moved: Array, changes: Array, scale: Array) -> Array:
