@@ -7,7 +7,14 @@ import pytest
 
 import sprung
 from sprung.campaign import Campaign
-from sprung.estimation import FitResult, fit_linear, readout_of, score_linear_term, score_linear_terms
+from sprung.estimation import (
+    FitResult,
+    fit_linear,
+    readout_of,
+    score_linear_term,
+    score_linear_terms,
+    score_linear_terms_together,
+)
 from sprung.estimation.eliminated_coordinates import eliminate_coordinates
 from sprung.estimation.modal_solution import differentiate_response, solve_modes
 from sprung.preprocess import FreeDecay, prepare
@@ -90,3 +97,31 @@ def test_a_part_that_is_there_gains_as_its_own_model_says(
         ((own, _),) = score_linear_term(optimum, larger.linear_models, campaign.sensors, larger.known, [start])
         assert own > 100
         assert gains[term] == pytest.approx(own, rel=tolerance)
+
+
+def test_terms_that_do_nothing_gain_together_what_each_gains_alone(
+    campaign: Campaign, plain: ModelStructure, optimum: FitResult
+) -> None:
+    """Those beside a term stay at values at which they do nothing: one evaluation tells all, as it does on pads."""
+    terms = ("anti-roll", "tyre-damping", "asymmetry", "rigid-axle")
+
+    def together(chosen: tuple[str, ...]) -> dict[str, float]:
+        larger = plain.with_terms(chosen)
+        return score_linear_terms_together(
+            optimum,
+            larger.linear_models,
+            campaign.sensors,
+            larger.known,
+            values=neutral_values(larger, optimum.parameters),
+            together=[(name,) for name in optimum.parameters],
+            candidates={term: [(name,) for name in parameters_of_term(term, "shared")] for term in chosen},
+        )
+
+    found = together(terms)
+    for term in terms:
+        larger = plain.with_terms((term,))
+        start = neutral_values(larger, optimum.parameters)
+        ((alone, _),) = score_linear_term(optimum, larger.linear_models, campaign.sensors, larger.known, [start])
+        assert alone > 1
+        assert found[term] == pytest.approx(together((term,))[term], rel=1e-6)
+        assert found[term] == pytest.approx(alone, rel=0.01)

@@ -13,7 +13,7 @@ from sprung.estimation.fit_result import FitResult
 from sprung.estimation.linear_fit import problem_of
 from sprung.estimation.priors import Coordinates
 from sprung.estimation.problem import Iterate
-from sprung.estimation.score_test import ScoreTest, score_added, score_test
+from sprung.estimation.score_test import ScoreTest, score_added, score_directions, score_test
 from sprung.estimation.statements import readout_of, statements_of
 from sprung.uncertainty import KnownValue
 from sprung.vehicle import LinearModel, Readout, Sensor, parameter_of, separate_track_names
@@ -99,6 +99,44 @@ def _changed(name: str, names: Sequence[str]) -> Real:
     """Return 1 for each of the names that changes with a parameter, shape (name,)."""
     own = (name,) if name in names else separate_track_names(name)
     return np.array([float(other in own) for other in names])
+
+
+def score_linear_terms_together(
+    fit: FitResult,
+    models: Mapping[str, LinearModel],
+    sensors: Sequence[Sensor],
+    known: Mapping[str, KnownValue],
+    *,
+    values: Mapping[str, float],
+    together: Sequence[Sequence[str]],
+    candidates: Mapping[str, Sequence[Sequence[str]]],
+) -> dict[str, float]:
+    """Return what terms of M, C and K would gain in a fitted linear vehicle, from one evaluation of a model that has them all.
+
+    Parameters
+    ----------
+    fit
+        Of the linear vehicle.
+    models, sensors, known
+        As for `fit_linear`, of the model that has them all.
+    values
+        Its parameters where it equals the fitted one, or nearly so, SI, by name.
+    together
+        The directions of the fitted model: parameters that move together in it.
+    candidates
+        By term, the directions that it adds.
+
+    Returns
+    -------
+    dict
+        In twice the log-likelihood, to second order.
+    """
+    names = next(iter(models.values())).names
+    objective = linear_objective(fit.decays, models, readout_of(sensors, names, known), sensors)
+    problem = problem_of(objective, statements_of(known, sensors, names), values)
+    u = problem.priors.nearest(values)
+    iterate = Iterate(u, objective.at(problem.priors.coordinates.values(u), fit.weights))
+    return score_directions(problem, iterate, together, candidates)
 
 
 def score_linear_term(

@@ -14,7 +14,7 @@ from sprung.estimation.linear_fit import NEAR, expected_nuisances
 from sprung.estimation.low_pass import LowPass
 from sprung.estimation.priors import Coordinates, PriorsAndConstraints, UsualValue
 from sprung.estimation.problem import CLOSE_BY, CONVERGED, EstimationProblem
-from sprung.estimation.score_test import score_test
+from sprung.estimation.score_test import score_directions
 from sprung.estimation.statements import readout_of, statements_of
 from sprung.estimation.stuck_drops import go_on_with_likelier_states
 from sprung.estimation.time_stepping import TimeSteppingObjective
@@ -43,9 +43,6 @@ _FAR = 0.1
 
 _HORIZON = 1.0
 """s of each decay that are fitted first: the shorter, the straighter the way from a start that is far away."""
-
-_BOUND = 1e-9
-"""Part of a direction, of length one, that constraints forbid, from which they do."""
 
 
 def fit_nonlinear(
@@ -190,29 +187,7 @@ def score_stepped_terms(
         min(_COARSE, longest_step) if low_pass is None else _longest_step(models, values),
     )
     problem = _problem(objective, known, values)
-    names, priors = problem.priors.coordinates.names, problem.priors
-    information, gradient, null_space = problem.system(problem.start(priors.nearest(values)))
-
-    def project(directions: Sequence[Sequence[str]]) -> Real:
-        """Return what constraints leave of directions, in the null space; as columns."""
-        basis = np.array([[float(name in direction) for name in names] for direction in directions]).T
-        along = null_space.T @ basis
-        _, forbidden, combinations = np.linalg.svd(basis - null_space @ along)
-        unconstrained: Real = along @ combinations[int(np.sum(forbidden > _BOUND)) :].T
-        return unconstrained
-
-    fitted = project(together)
-    gains = {}
-    for name, directions in candidates.items():
-        basis = np.hstack([fitted, project([*together, *directions])])
-        # Of the larger model's directions those that the smaller one has not.
-        added = (
-            basis[:, fitted.shape[1] :] - fitted @ np.linalg.lstsq(fitted, basis[:, fitted.shape[1] :], rcond=None)[0]
-        )
-        left, sizes, _ = np.linalg.svd(added, full_matrices=False)
-        basis = np.hstack([fitted, left[:, sizes > _BOUND]])
-        gains[name] = score_test(basis.T @ information @ basis, basis.T @ gradient, fitted.shape[1]).gain()
-    return gains
+    return score_directions(problem, problem.start(problem.priors.nearest(values)), together, candidates)
 
 
 def _statements(

@@ -77,7 +77,9 @@ def select_finite_rotation(search: ModelSearch, plain: ModelStructure) -> ModelS
     plainest, *others = _ASSUMPTIONS[:2] if structure.campaign.heights.has_effect else _ASSUMPTIONS
     if _loses_much(search, plainest, _drops_that_turn_most(search.fit)):
         return search
-    first, assumption = _corrected(search, recorded, plainest, passes=1, most=_FIRST_ITERATIONS), plainest
+    first, assumption = _corrected(search, recorded, plainest, passes=1, most=_enough_to_tell(search)), plainest
+    if not search.is_overdispersed and _promised(first.fit) > search.fit.loglikelihood:
+        first = _corrected(search, recorded, plainest, passes=1, most=_FIRST_ITERATIONS)
     if first.fit.loglikelihood > search.fit.loglikelihood:
         # Assumptions are compared once each has the geometry that it leads to itself.
         tried = [_corrected(first, recorded, plainest, passes=1, most=_FIRST_ITERATIONS)]
@@ -108,7 +110,7 @@ def _loses_much(search: ModelSearch, assumption: _Assumption, drops: Sequence[in
     """Whether the correction loses so much in a part of the samples that it cannot gain in all of them."""
     decays = [search.decays[drop] for drop in drops]
     thin, part = thinned(decays, _RATE, np.inf)
-    if part > _PART:
+    if part > _PART or any(decay.pads for decay in decays):  # of a driven record the lines count, not the samples
         return False
     fit, structure = search.fit, _with_geometry(search.structure, search.fit.parameters, assumption)
     motions = [
@@ -117,10 +119,20 @@ def _loses_much(search: ModelSearch, assumption: _Assumption, drops: Sequence[in
     ]
     corrected = _without_rotation(structure, fit, thin, motions)
     before, after = (
-        fit_structure(own, decays, fit, NEAR, search.progress, most=_FIRST_ITERATIONS).loglikelihood
+        _promised(fit_structure(own, decays, fit, NEAR, search.progress, most=_enough_to_tell(search)))
         for own, decays in ((search.structure, thin), (structure, corrected))
     )
     return 2 * (after - before) < -search.required_of_switch
+
+
+def _enough_to_tell(search: ModelSearch) -> int:
+    """Return the iterations that tell what the correction gains: where only noise is left, the next step tells enough."""
+    return _FIRST_ITERATIONS if search.is_overdispersed else 0
+
+
+def _promised(fit: FitResult) -> float:
+    """Return the log-likelihood to which one Newton step leads."""
+    return fit.loglikelihood + 0.5 * fit.remaining_gain
 
 
 def _corrected(

@@ -11,6 +11,7 @@ from sprung.estimation import (
     readout_of,
     score_linear_term,
     score_linear_terms,
+    score_linear_terms_together,
     score_nonlinear_terms,
     score_stepped_terms,
 )
@@ -26,6 +27,7 @@ from sprung.selection.starts import (
     thinned,
     usual_variants,
 )
+from sprung.selection.structure import ModelStructure
 from sprung.selection.terms import TERMS
 from sprung.vehicle import separate_track_names
 
@@ -104,12 +106,43 @@ def _of_fitted_model(search: ModelSearch, terms: Sequence[str]) -> Scores:
             values |= {} if undefined is None else undefined(own, variant)
         ways.append((values, {term: brought[term] for term in there}))
     sensors = readout_of(larger.sensors, larger.names, larger.known)
-    scores = Scores()
-    for tests in score_linear_terms(search.fit, larger.linear_models, sensors, ways) or ():
+    scores, found = Scores(), score_linear_terms(search.fit, larger.linear_models, sensors, ways)
+    if found is None:
+        return _of_neutral_model(search, [term for term in terms if TERMS[term].undefined is None])
+    for tests in found:
         for term, (gain, estimates) in tests.items():
             if term not in scores or gain > scores[term][0]:
                 scores[term] = gain, abs(TERMS[term].size(neutral | own | estimates))
     return scores
+
+
+def _of_neutral_model(search: ModelSearch, terms: Sequence[str]) -> Scores:
+    """Score linear terms that may do nothing at all, in one evaluation of the model that has them all.
+
+    The sizes to expect are not computed, and the typical ones are returned.
+    """
+    larger = search.with_terms(terms)
+    gains = score_linear_terms_together(
+        search.fit,
+        larger.linear_models,
+        larger.sensors,
+        larger.known,
+        values=neutral_values(larger, search.fit.parameters),
+        together=_directions(search, larger),
+        candidates=_brought(larger, terms),
+    )
+    return {term: (gain, TERMS[term].typical) for term, gain in gains.items()}
+
+
+def _directions(search: ModelSearch, larger: ModelStructure) -> list[tuple[str, ...]]:
+    """Return the parameters of a larger model that move together in the fitted one."""
+    separated = larger.tracks != search.structure.tracks
+    return [separate_track_names(name) if separated else (name,) for name in search.fit.parameters]
+
+
+def _brought(larger: ModelStructure, terms: Sequence[str]) -> dict[str, list[tuple[str, ...]]]:
+    """Return what each term adds to a model as directions."""
+    return {term: [(name,) for name in TERMS[term].parameters(larger.tracks, larger.layout)] for term in terms}
 
 
 def with_best_start(search: ModelSearch, term: str) -> ModelSearch:
@@ -174,19 +207,16 @@ def _stepped(search: ModelSearch, terms: Sequence[str]) -> Scores:
 
 def _score_together(search: ModelSearch, decays: Sequence[FreeDecay], terms: Sequence[str]) -> dict[str, float]:
     """Score terms at a nonlinear fit in one evaluation of the model that has them all."""
-    largest, own = search.with_terms(terms), search.fit.parameters
-    separated = largest.tracks != search.structure.tracks
+    largest = search.with_terms(terms)
     return score_stepped_terms(
         decays,
         largest.nonlinear_models,
         search.structure.sensors,
         largest.known,
-        values=neutral_values(largest, own),
+        values=neutral_values(largest, search.fit.parameters),
         states=states_by_coordinates(search.fit.states, search.fit.names, largest.names),
-        together=[separate_track_names(name) if separated else (name,) for name in own],
-        candidates={
-            term: [(name,) for name in TERMS[term].parameters(largest.tracks, largest.layout)] for term in terms
-        },
+        together=_directions(search, largest),
+        candidates=_brought(largest, terms),
         longest_step=_SAMPLE / min(decay.rate for decay in search.decays),
         tilting=search.structure.gravity_leakage,
         low_pass=search.structure.low_pass,

@@ -187,13 +187,18 @@ def _try_scored(search: ModelSearch, tried: Collection[str]) -> tuple[ModelSearc
     best = sorted((term for term in terms if ratios[term] > 1), key=lambda term: -ratios[term])[:_TRIED_BESIDE]
     fitted: list[str] = []
     for term in best:
-        if term not in fitted:
-            laws = _laws_of_part(term, untried)
-            fitted += laws
-            tested = try_likeliest(search, laws)
-            if tested.structure is not search.structure:
-                return confirm_low_pass(tested), fitted
-            search = tested
+        if term in fitted:
+            continue
+        # Scores of a part of the decays hold for all of them if they are more than chance: a step in all of them tells.
+        if not search.is_overdispersed and (gain := take_first_step(search, term)[1]) < search.required(term):
+            search, fitted = search.recorded({term: gain}, False, False), [*fitted, term]
+            continue
+        laws = _laws_of_part(term, untried)
+        fitted += laws
+        tested = try_likeliest(search, laws)
+        if tested.structure is not search.structure:
+            return confirm_low_pass(tested), fitted
+        search = tested
     return search, fitted
 
 
