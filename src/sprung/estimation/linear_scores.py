@@ -10,10 +10,11 @@ from numpy.typing import NDArray
 from sprung.estimation.closed_form import linear_objective
 from sprung.estimation.eliminated_coordinates import eliminate_coordinates
 from sprung.estimation.fit_result import FitResult
+from sprung.estimation.joint_scores import score_directions
 from sprung.estimation.linear_fit import problem_of
 from sprung.estimation.priors import Coordinates
 from sprung.estimation.problem import Iterate
-from sprung.estimation.score_test import ScoreTest, score_added, score_directions, score_test
+from sprung.estimation.score_test import ScoreTest, score_added, score_test
 from sprung.estimation.statements import readout_of, statements_of
 from sprung.uncertainty import KnownValue
 from sprung.vehicle import LinearModel, Readout, Sensor, parameter_of, separate_track_names

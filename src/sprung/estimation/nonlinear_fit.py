@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.estimation.fit_result import FitResult
+from sprung.estimation.joint_scores import score_directions
 from sprung.estimation.linear_fit import NEAR, expected_nuisances
 from sprung.estimation.low_pass import LowPass
 from sprung.estimation.priors import Coordinates, PriorsAndConstraints, UsualValue
 from sprung.estimation.problem import CLOSE_BY, CONVERGED, EstimationProblem
-from sprung.estimation.score_test import score_directions
 from sprung.estimation.statements import readout_of, statements_of
 from sprung.estimation.stuck_drops import go_on_with_likelier_states
 from sprung.estimation.time_stepping import TimeSteppingObjective

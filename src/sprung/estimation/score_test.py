@@ -6,7 +6,7 @@ Both follow from information and gradient where a model was fitted, without any 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -16,16 +16,13 @@ from numpy.typing import NDArray
 from sprung.estimation.elimination import eliminate
 from sprung.estimation.fit_result import FitResult
 from sprung.estimation.priors import scaling_direction
-from sprung.estimation.problem import RANK, EstimationProblem, Iterate, identifiable_equations, identifiable_subspace
+from sprung.estimation.problem import RANK, identifiable_equations, identifiable_subspace
 from sprung.vehicle import evaluate_quantity, is_of_sensor
 
 Real = NDArray[np.float64]
 
 _DETERMINED = 1e-9
 """Part of an unknown's own information, above rounding, that nuisance parameters must leave for it to be tested."""
-
-_BOUND = 1e-9
-"""Part of a direction, of length one, that constraints forbid, from which they do."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,55 +126,6 @@ def score_test(information: Real, gradient: Real, nuisance: int) -> ScoreTest:
     covariance = subspace @ np.linalg.solve(system[tested:, tested:], subspace.T)
     stds = np.sqrt(np.maximum(np.diag(covariance), np.finfo(float).tiny))
     return ScoreTest(score, reduced, np.diag(system)[:tested].copy(), subspace @ response / stds[:, None])
-
-
-def score_directions(
-    problem: EstimationProblem,
-    iterate: Iterate,
-    together: Sequence[Sequence[str]],
-    candidates: Mapping[str, Sequence[Sequence[str]]],
-) -> dict[str, float]:
-    """Return what larger models would gain over one that is fitted already, from one evaluation of a model that has everything.
-
-    Parameters
-    ----------
-    problem
-        Of the model that has everything.
-    iterate
-        Where it equals the fitted one, or nearly so.
-    together
-        The directions of the fitted model: parameters that move together in it.
-    candidates
-        The further directions of each larger one.
-
-    Returns
-    -------
-    dict
-        In twice the log-likelihood, to second order.
-    """
-    names = problem.priors.coordinates.names
-    information, gradient, null_space = problem.system(iterate)
-
-    def project(directions: Sequence[Sequence[str]]) -> Real:
-        """Return what constraints leave of directions, in the null space; as columns."""
-        basis = np.array([[float(name in direction) for name in names] for direction in directions]).T
-        along = null_space.T @ basis
-        _, forbidden, combinations = np.linalg.svd(basis - null_space @ along)
-        unconstrained: Real = along @ combinations[int(np.sum(forbidden > _BOUND)) :].T
-        return unconstrained
-
-    fitted = project(together)
-    gains = {}
-    for name, directions in candidates.items():
-        basis = np.hstack([fitted, project([*together, *directions])])
-        # Of the larger model's directions those that the smaller one has not.
-        added = (
-            basis[:, fitted.shape[1] :] - fitted @ np.linalg.lstsq(fitted, basis[:, fitted.shape[1] :], rcond=None)[0]
-        )
-        left, sizes, _ = np.linalg.svd(added, full_matrices=False)
-        basis = np.hstack([fitted, left[:, sizes > _BOUND]])
-        gains[name] = score_test(basis.T @ information @ basis, basis.T @ gradient, fitted.shape[1]).gain()
-    return gains
 
 
 def score_added(fit: FitResult, gradient: Real, information: Real) -> ScoreTest:
