@@ -17,6 +17,9 @@ if TYPE_CHECKING:
 
 Real = NDArray[np.float64]
 
+_FOLLOWING = 1e-5
+"""Damping of initial states that follow parameters, at the most: more would keep them from following at all."""
+
 _STATE_STEPS, _STATE_GAIN = 20, 1e-2
 """Gauss-Newton steps of initial states alone, at the most, and gain in twice the log-likelihood below which they end."""
 
@@ -72,9 +75,11 @@ class TimeSteppingAt:
         information, gradient = self._normal_equations
         parameters = len(self.values)
         change = values - self.values
-        own = self._damped(damping)[:, parameters:, parameters:]
+        own, stepping = (
+            self._damped(part)[:, parameters:, parameters:] for part in (min(damping, _FOLLOWING), damping)
+        )
         following = -solve_normal_equations(own, information[:, parameters:, :parameters] @ change[:, None])[:, :, 0]
-        step = solve_normal_equations(own, gradient[:, parameters:, None])[:, :, 0]
+        step = solve_normal_equations(stepping, gradient[:, parameters:, None])[:, :, 0]
         whole = self._moved_by(values, following + step)
         if not whole._cost > self._cost:
             return whole
@@ -151,11 +156,11 @@ class TimeSteppingAt:
 
     def damped(self, damping: float, /) -> tuple[Real, Real, float]:
         """Return information and gradient of the parameters as initial states follow with a damping, and what these gain."""
-        information, (_, gradient), parameters = self._damped(damping), self._normal_equations, len(self.values)
+        (_, gradient), parameters = self._normal_equations, len(self.values)
         visible = self.objective.visible_changes(self.values)
-        of_parameters, reduced, _ = eliminate(information, gradient, parameters)
-        of_states = gradient[:, parameters:]
-        step = solve_normal_equations(information[:, parameters:, parameters:], of_states[:, :, None])[:, :, 0]
+        of_parameters, reduced, _ = eliminate(self._damped(min(damping, _FOLLOWING)), gradient, parameters)
+        of_states, own = gradient[:, parameters:], self._damped(damping)[:, parameters:, parameters:]
+        step = solve_normal_equations(own, of_states[:, :, None])[:, :, 0]
         return (
             visible.T @ of_parameters.sum(axis=0) @ visible,
             reduced.sum(axis=0) @ visible,
