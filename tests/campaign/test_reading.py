@@ -189,6 +189,11 @@ def test_a_slow_recording_is_refused(folder: Folder, text: Text, step: float, wo
     assert words in str(error.value)
 
 
+def test_the_slowest_recording_is_accepted_whatever_rounding_leaves_of_its_rate(folder: Folder, text: Text) -> None:
+    one = read(folder(one=text(step=(1 + 1e-7) / 64))).recordings[0]
+    assert one.rate == pytest.approx(64, rel=1e-4)
+
+
 def test_wheel_sensors_are_optional_and_start_and_end_are_kept(folder: Folder) -> None:
     campaign = read(folder(('"one.csv"', '"one.csv"\nstart = 0.05\nend = 0.198')))
     assert (campaign.drops[0].start, campaign.drops[0].end) == (0.05, 0.198)

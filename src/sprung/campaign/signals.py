@@ -116,7 +116,7 @@ def make_recording(table: SampleTable, sensors: Sequence[Sensor], name: str) -> 
     count = values.shape[1]
     samples = _regular(table, values, name)
     useless = np.isnan(samples.values).all() and bool(samples.faults)
-    if samples.rate < MIN_RATE and not useless:
+    if round(samples.rate, 2) < MIN_RATE and not useless:  # times in files are rounded
         raise InputError([_too_slow(samples.rate, name)])
     if useless:
         faults, left_out = [*samples.faults], []

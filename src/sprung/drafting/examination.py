@@ -141,7 +141,7 @@ def _require_channels(name: str, seen: ChannelSurvey) -> None:
             found = f"neither accelerations nor displacements ({measured})"
         do = "If one of them is, state its unit in the file, such as 'ch1 [g]'."
         raise InputError([Problem(name, found, "channels of accelerometers", do)])
-    if not seen.rate >= MIN_RATE:
+    if not round(seen.rate, 2) >= MIN_RATE:  # times in files are rounded
         found = f"{seen.rate:.4g} samples per second"
         raise InputError(
             [Problem(name, found, f"at least {MIN_RATE:g}, to resolve wheel hop", "Record at 200 Hz or more.")]
