@@ -11,7 +11,7 @@ from sprung.campaign.gap_filling import MAX_MISSING, fill_gaps
 from sprung.campaign.recording import Recording
 from sprung.campaign.time_base import RegularTimeBase, regularise_time_base
 from sprung.errors import Fault, InputError, Problem, Problems, did_you_mean
-from sprung.formats import MIN_RATE, SampleTable
+from sprung.formats import MIN_RATE, SampleTable, resolves_wheel_hop
 from sprung.units import SI_UNITS, Quantity, quantity_name, si_factor, si_symbol, split_unit
 
 if TYPE_CHECKING:
@@ -116,7 +116,7 @@ def make_recording(table: SampleTable, sensors: Sequence[Sensor], name: str) -> 
     count = values.shape[1]
     samples = _regular(table, values, name)
     useless = np.isnan(samples.values).all() and bool(samples.faults)
-    if round(samples.rate, 2) < MIN_RATE and not useless:  # times in files are rounded
+    if not (resolves_wheel_hop(samples.rate) or useless):
         raise InputError([_too_slow(samples.rate, name)])
     if useless:
         faults, left_out = [*samples.faults], []

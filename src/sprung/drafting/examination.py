@@ -28,7 +28,7 @@ from sprung.drafting.quantity_names import is_pad_named
 from sprung.drafting.records import DraftFile
 from sprung.drafting.release_detection import average_pieces, detect_releases
 from sprung.errors import InputError, Problem
-from sprung.formats import MIN_RATE, read_table
+from sprung.formats import MIN_RATE, read_table, resolves_wheel_hop
 from sprung.units import si_factor
 
 if TYPE_CHECKING:
@@ -141,7 +141,7 @@ def _require_channels(name: str, seen: ChannelSurvey) -> None:
             found = f"neither accelerations nor displacements ({measured})"
         do = "If one of them is, state its unit in the file, such as 'ch1 [g]'."
         raise InputError([Problem(name, found, "channels of accelerometers", do)])
-    if not round(seen.rate, 2) >= MIN_RATE:  # times in files are rounded
+    if not resolves_wheel_hop(seen.rate):
         found = f"{seen.rate:.4g} samples per second"
         raise InputError(
             [Problem(name, found, f"at least {MIN_RATE:g}, to resolve wheel hop", "Record at 200 Hz or more.")]

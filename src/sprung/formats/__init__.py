@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING, Any
 
-from sprung.formats.interpolation import MIN_RATE, interpolate
+from sprung.formats.interpolation import MIN_RATE, interpolate, resolves_wheel_hop
 from sprung.formats.registry import Format, formats, read_table
 
 if TYPE_CHECKING:
@@ -18,6 +18,7 @@ __all__ = [
     "from_sep005",
     "interpolate",
     "read_table",
+    "resolves_wheel_hop",
 ]
 
 

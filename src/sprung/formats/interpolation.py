@@ -11,6 +11,22 @@ Real = NDArray[np.float64]
 MIN_RATE = 64.0
 """Samples per second below which wheel hop, up to some 20 Hz, is lost."""
 
+
+def resolves_wheel_hop(rate: float) -> bool:
+    """Whether a sampling rate is enough for wheel hop.
+
+    Parameters
+    ----------
+    rate
+        Samples per second. Times in files are rounded: it counts to two decimals.
+
+    Returns
+    -------
+    bool
+    """
+    return round(rate, 2) >= MIN_RATE
+
+
 _SLOWER = 1.5
 """Ratio of two rates from which samples of the faster clock are averaged: a spline through them would fold their noise."""
 

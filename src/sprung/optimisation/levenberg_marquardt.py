@@ -16,7 +16,6 @@ from typing import Any, Generic, NamedTuple, Protocol, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-Real = NDArray[np.float64]
 Array = NDArray[Any]
 
 _LEAST_DAMPING, _MOST_DAMPING = 1e-12, 1e8
