@@ -158,9 +158,21 @@ def add_knee(car: RealCar, draw: Draw) -> RealCar:
     The knee of every other car is rounded. Damping before it is larger, so that at 0.3 m/s the curve's mean of both
     directions is the car's.
     """
-    knee, slope = draw.pair(0.05, 0.2), draw.pair(0.2, 0.6)
+    return _with_curve(car, draw, (0.2, 0.6), (1.4, 2.8))
+
+
+def add_orifice(car: RealCar, draw: Draw) -> RealCar:
+    """Add dampers that an orifice makes the harder the faster they move, as `add_knee`, with 1.5 to 3 times beyond the knee.
+
+    Rebound is up to twice as hard.
+    """
+    return _with_curve(car, draw, (1.6, 2.8), (1.07, 1.9))
+
+
+def _with_curve(car: RealCar, draw: Draw, slopes: Pair, rebounds: Pair) -> RealCar:
+    knee, slope = draw.pair(0.05, 0.2), draw.pair(*slopes)
     ratio = [1 / (min(k / 0.3, 1) * (1 - s) + s) for k, s in zip(knee, slope, strict=True)]
-    rebound = draw.pair(1.4, 2.8)
+    rebound = draw.pair(*rebounds)
     front, rear = (r * 2 / (1 + e) for r, e in zip(ratio, rebound, strict=True))
     part = float(draw.random.choice([0.0, 0.3]))
     rounding = (part * knee[0], part * knee[1])
@@ -242,6 +254,7 @@ KINDS: Mapping[str, tuple[tuple[Add, ...], tuple[str, ...]]] = MappingProxyType(
         "plain": ((), ()),
         "mount": ((add_mount,), ()),
         "knee": ((add_knee,), ()),
+        "orifice": ((add_orifice,), ()),
         "Zener": ((add_zener,), ()),
         "tyre": ((add_tyre,), ()),
         "twist": ((add_twist,), _LONG),

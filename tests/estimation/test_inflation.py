@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sprung.estimation.overdispersion import autocorrelation_inflation, birge_ratio
+from sprung.estimation.overdispersion import autocorrelation_inflation, birge_ratio, independent_records
 
 
 def test_white_residuals_are_left_alone() -> None:
@@ -43,17 +43,47 @@ def test_a_channel_left_out_counts_nothing() -> None:
     assert colour[1] == 1.0
 
 
-def simulated(drops: int, excess: float, seed: int) -> float:
-    """Scores of drops whose own estimates scatter with `excess` times their information's variance, centred jointly."""
+def repeated(part: float, mirrored: bool = False, alike: bool = True) -> float:
+    """Six drops, three of each of two motions, that repeat a part of the variance of what the model leaves."""
+    random = np.random.default_rng(4)
+    motions, errors = random.standard_normal((2, 2, 4, 1500))
+    sign = [1.0, -1.0 if mirrored else 1.0, 1.0]
+    residuals, modelled = [], []
+    for motion, error in zip(motions, errors, strict=True):
+        for one in sign:
+            own = random.standard_normal((4, 1500))
+            residuals.append(one * np.sqrt(part) * error + np.sqrt(1 - part) * own)
+            modelled.append(one * motion if alike else random.standard_normal((4, 1500)))
+    return independent_records(residuals, modelled, np.ones(4), 1.0)
+
+
+@pytest.mark.parametrize("mirrored", [False, True])
+def test_drops_that_repeat_each_other_count_as_one(mirrored: bool) -> None:
+    """An error common to n of N drops adds up: their mean has (1 + (n - 1) ρ) times the variance of independent ones'."""
+    assert repeated(1.0, mirrored) == pytest.approx(2.0)
+    assert repeated(0.5, mirrored) == pytest.approx(6 / (1 + 2 * 0.5), rel=0.03)
+
+
+def test_drops_that_repeat_nothing_count_each() -> None:
+    assert repeated(0.0) == pytest.approx(6.0, rel=0.01)
+    assert repeated(1.0, alike=False) == pytest.approx(6.0, rel=0.2)  # motions alike by chance, to 1/√6000
+
+
+def simulated(drops: int, excess: float, seed: int, repeats: int = 1) -> float:
+    """Scores of drops whose own estimates scatter with `excess` times their information's variance, centred jointly.
+
+    Each is there so many times.
+    """
     random = np.random.default_rng(seed)
     informations = []
     for _ in range(drops):
         root = random.standard_normal((6, 6))
         informations.append(root @ root.T)
     own = [random.multivariate_normal(np.zeros(6), excess * np.linalg.inv(F)) for F in informations]
+    informations, own = repeats * informations, repeats * own
     joint = np.linalg.solve(sum(informations), sum(F @ x for F, x in zip(informations, own, strict=True)))
     scores = np.array([F @ (x - joint) for F, x in zip(informations, own, strict=True)])
-    return birge_ratio(scores, np.array(informations))
+    return birge_ratio(scores, np.array(informations), 1 / repeats)
 
 
 def test_agreeing_drops_are_left_alone() -> None:
@@ -62,6 +92,11 @@ def test_agreeing_drops_are_left_alone() -> None:
 
 def test_drops_that_disagree_give_their_ratio_away() -> None:
     assert np.mean([simulated(10, 4.0, seed) for seed in range(50)]) == pytest.approx(4.0, rel=0.1)
+
+
+def test_drops_that_are_there_three_times_disagree_three_times_as_much() -> None:
+    """The mean of n drops that were each counted m times has m times the variance that it seems to have."""
+    assert np.mean([simulated(10, 4.0, seed, 3) for seed in range(50)]) == pytest.approx(3 * 4.0, rel=0.1)
 
 
 def test_one_drop_cannot_disagree() -> None:

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 import sprung
 from selection.test_refined_terms import BALLAST
+from sprung.selection.nonlinear_terms import KNEE_RATIOS
+from sprung.selection.ordinary_vehicle import ordinary_vehicle
+from sprung.selection.structure import choose_structure
 from sprung.selection.terms import TERMS
 from sprung.vehicle import TABLE_1_CAR, Vehicle
 
@@ -20,6 +25,9 @@ PEOPLE = {"m_o": 140.0, "k_o": 140.0 * (2 * 3.1416 * 4.4) ** 2, "c_o": 2200.0, "
 
 CURVE = {"r_f": 1.8, "r_r": 1.8, "v_kf": 0.08, "v_kr": 0.08, "q_f": 0.5, "q_r": 0.5}
 """Dampers with a knee, harder in rebound."""
+
+ORIFICE = {"r_f": 1.7, "r_r": 1.6, "v_kf": 0.1, "v_kr": 0.1, "q_f": 2.3, "q_r": 2.3, "c_sf": 700.0, "c_sr": 650.0}
+"""Dampers that an orifice makes the harder the faster they move."""
 
 BENDING = {"m_v": 80.0, "k_v": 80.0 * (2 * 3.1416 * 11.0) ** 2, "c_v": 400.0, "b_v": 0.6, "p_v": 0.1}
 """A body that bends at 11 Hz."""
@@ -50,6 +58,31 @@ def test_both_of_two_effects_are_found(first: dict[str, float], second: dict[str
         found = result.parameters[name]
         assert found.std is not None
         assert found.value == pytest.approx(car.parameters[name], abs=4 * found.std), name
+
+
+@pytest.mark.slow
+def test_dampers_that_steepen_are_found() -> None:
+    """Whether the curve flattens or steepens beyond its knee shows in its score, from which an ordinary vehicle follows."""
+    car = Vehicle.from_parameters(TABLE_1_CAR.parameters | ORIFICE)
+    known = {"total_mass": car.total_mass}
+    result = sprung.identify(sprung.simulate(car, loads=[BALLAST], rate=500.0, noise=0.02, seed=2, known=known))
+    assert result.verdict.state == "accept"
+    assert {"rebound", "damper-curve"} <= {*result.fit.model}
+    for name in car.parameters:
+        found = result.parameters[name]
+        assert found.std is not None
+        assert found.value == pytest.approx(car.parameters[name], abs=4 * found.std), name
+
+
+def test_an_ordinary_damper_that_steepens_has_its_usual_force_in_a_drop() -> None:
+    """Half the slope beyond 0.12 m/s, or twice: at 0.3 m/s both exert the same force."""
+    structure = choose_structure(sprung.simulate(TABLE_1_CAR, duration=1.0), "shared", ("damper-curve",))
+    forces = []
+    for ratio in KNEE_RATIOS:
+        values, _ = ordinary_vehicle(replace(structure, knee_ratio=ratio))
+        assert values["q_f"] == ratio
+        forces.append(values["c_sf"] * (values["v_kf"] + ratio * (0.3 - values["v_kf"])))
+    assert forces[0] == pytest.approx(forces[1], rel=1e-12)
 
 
 def test_a_knee_at_no_velocity_is_a_friction() -> None:

@@ -16,7 +16,7 @@ from sprung.estimation.estimates import (
     to_estimates,
     unidentifiable_combinations,
 )
-from sprung.estimation.fit_result import FitResult
+from sprung.estimation.fit_result import FitResult, Inflater
 from sprung.estimation.linear_fit import NEAR, STARTS, escape_local_optimum, fit_linear, weigh_statements
 from sprung.estimation.linear_scores import score_linear_term, score_linear_terms, score_linear_terms_together
 from sprung.estimation.low_pass import HIGHEST_CORNER, LowPass, SampledLowPass, unexplained_squares
@@ -42,7 +42,7 @@ from sprung.estimation.starts import (
     usual_vehicle,
 )
 from sprung.estimation.statements import readout_of, statements_of
-from sprung.estimation.statistics import FitStatistics, Inflater, consider_held, fit_jointly, uncertainty_of
+from sprung.estimation.statistics import FitStatistics, consider_held, fit_jointly, uncertainty_of
 from sprung.estimation.subspace import canonical_basis
 
 __all__ = [

@@ -5,17 +5,26 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sprung.estimation.objective import ObjectiveAt
-from sprung.estimation.overdispersion import autocorrelation_inflation, birge_ratio, drop_corrections
+from sprung.estimation.overdispersion import (
+    autocorrelation_inflation,
+    birge_ratio,
+    drop_corrections,
+    independent_records,
+)
 from sprung.estimation.problem import EstimationProblem, Iterate
 from sprung.preprocess import FreeDecay, Moments, SensorNoise, estimate_sensor_noise, pool_moments
 from sprung.vehicle import is_of_sensor
 
 Real = NDArray[np.float64]
+
+Inflater = Literal["nothing", "coloured residuals", "drops that disagree", "large and small motions that disagree"]
+"""What shows that the records have less information than white residuals would."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -170,6 +179,27 @@ class FitResult:
     def overdispersion(self) -> float:
         """Factor on every variance: the largest of the three, 1 where none is significant."""
         return max(float(self.autocorrelation_inflation.max()), self.disagreement, self.disagreement_in_time)
+
+    @cached_property
+    def inflation(self) -> tuple[float, Inflater]:
+        """Factor on the variance of every estimate, and what it is due to: overdispersion, where repeated drops count once.
+
+        The search for a model does not count so: what repeats is what further terms may explain.
+        """
+        if self.overdispersion == 1:
+            return 1.0, "nothing"
+        coloured, disagreement = float(self.autocorrelation_inflation.max()), self.disagreement
+        if len({decay.rate for decay in self.decays}) == 1:
+            count = independent_records(self.residuals, self.fitted, self.weights, coloured) / len(self.decays)
+            coloured = coloured / count if coloured > 1 else 1.0
+            disagreement = max(disagreement, birge_ratio(*self.problem.by_drop(self.iterate), count))
+        by_reason: dict[Inflater, float] = {
+            "coloured residuals": coloured,
+            "drops that disagree": disagreement,
+            "large and small motions that disagree": self.disagreement_in_time,
+        }
+        reason = max(by_reason, key=lambda reason: by_reason[reason])
+        return by_reason[reason], reason
 
     @property
     def drop_corrections(self) -> tuple[Real, NDArray[np.int64]]:

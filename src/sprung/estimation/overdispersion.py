@@ -7,6 +7,7 @@ and small motions.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
@@ -70,7 +71,51 @@ def autocorrelation_inflation(
     return np.where(ratio > 1 + _SIGNIFICANT * np.sqrt(2 / np.maximum(batches, 1.0)), ratio, 1.0)
 
 
-def birge_ratio(scores: Real, informations: Real) -> float:
+def independent_records(residuals: Sequence[Real], motions: Sequence[Real], weights: Real, correlation: float) -> float:
+    """Return as how many records some records count, of which some repeat what the model leaves of others.
+
+    Parameters
+    ----------
+    residuals
+        One record for each drop from its start on, all at one rate, shape (channel, time), NaN in channels that are left out.
+    motions
+        What the model says of the same samples.
+    weights
+        1/σ² of each channel, s⁴/m², shape (channel,).
+    correlation
+        Autocorrelation inflation of the residuals.
+
+    Returns
+    -------
+    float
+        Their number, if no residual resembles that of another drop that moves alike.
+
+    Notes
+    -----
+    A record counts as one over the sum of its residual's correlation coefficients with those of all records, each times that
+    of the motions: an error of the model adds up where both repeat, or where both are reversed. The sum is the cross term of a
+    covariance estimate that allows for correlation between parts (Driscoll and Kraay, Rev. Econ. Statist. 80 (1998) 549).
+    Coefficients that are not significant count as zero.
+    """
+    scales = np.sqrt(weights)[:, None]
+    scaled = [[np.nan_to_num(scales * record) for record in records] for records in (residuals, motions)]
+    shared = np.eye(len(residuals))
+    for one, other in combinations(range(len(residuals)), 2):
+        of_residuals, of_motions = (_correlation_coefficient(records[one], records[other]) for records in scaled)
+        samples = min(residuals[one].size, residuals[other].size)
+        if abs(of_residuals) > _SIGNIFICANT * np.sqrt(correlation / samples):
+            shared[one, other] = shared[other, one] = max(of_residuals * of_motions, 0.0)
+    return float(np.sum(1 / shared.sum(axis=0)))
+
+
+def _correlation_coefficient(one: Real, other: Real) -> float:
+    length = min(one.shape[1], other.shape[1])
+    one, other = one[:, :length], other[:, :length]
+    size = np.sqrt(np.sum(one**2) * np.sum(other**2))
+    return float(np.sum(one * other) / size) if size else 0.0
+
+
+def birge_ratio(scores: Real, informations: Real, independent: float = 1.0) -> float:
     """Return the square of the :term:`Birge ratio`: by how much parts of the records differ from each other beyond their noise.
 
     Parameters
@@ -79,6 +124,8 @@ def birge_ratio(scores: Real, informations: Real) -> float:
         Gradient of the log-likelihood of each part at the joint optimum, in free directions; shape (part, direction).
     informations
         Fisher information of each part in the same directions; shape (part, direction, direction).
+    independent
+        As what part of their number they count: those that repeat others are no evidence of their own.
 
     Returns
     -------
@@ -92,7 +139,7 @@ def birge_ratio(scores: Real, informations: Real) -> float:
     drop goes unseen. Where they are windows of time, an error shows that depends on how far or how fast it moved.
     """
     squares, directions = drop_corrections(scores, informations)
-    freedom = int(directions.sum()) - scores.shape[1]
+    freedom = independent * int(directions.sum()) - scores.shape[1]
     if freedom <= 0:
         return 1.0
     ratio = float(squares.sum()) / freedom

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sprung.display import shown
-from sprung.estimation.fit_result import FitResult
+from sprung.estimation.fit_result import FitResult, Inflater
 from sprung.estimation.linear_fit import STARTS, escape_local_optimum, fit_linear
 from sprung.estimation.priors import scaling_direction
 from sprung.estimation.problem import NO_INFORMATION, RANK
@@ -21,9 +20,6 @@ from sprung.uncertainty import KnownValue
 from sprung.vehicle import LinearModel, Sensor, is_of_sensor, mean_of_sides, parameter_of
 
 Real = NDArray[np.float64]
-
-Inflater = Literal["nothing", "coloured residuals", "drops that disagree", "large and small motions that disagree"]
-"""What shows that the records have less information than white residuals would."""
 
 _BEYOND_DOUBT = 1e4
 """Information that noise alone never adds: one percent of uncertainty."""
@@ -207,8 +203,7 @@ def uncertainty_of(fit: FitResult) -> FitStatistics:
     """
     problem, optimum = fit.problem, fit.iterate
     by_channel = fit.autocorrelation_inflation
-    inflation = fit.overdispersion
-    is_coloured = 1 < float(by_channel.max()) == inflation
+    inflation, inflated_by = fit.inflation
     eigenvalues, directions = _directions(fit, inflation)
     relative = directions @ (directions / np.maximum(eigenvalues, _LEAST)).T
     derivatives = problem.priors.coordinates.derivatives(optimum.u)
@@ -229,8 +224,8 @@ def uncertainty_of(fit: FitResult) -> FitStatistics:
         converged=fit.converged,
         starts_agreeing=fit.starts_agreeing,
         starts=fit.starts,
-        inflated_by=_inflater(fit),
-        most_coloured=int(by_channel.argmax()) if is_coloured else None,
+        inflated_by=inflated_by,
+        most_coloured=int(by_channel.argmax()) if inflated_by == "coloured residuals" else None,
     )
 
 
@@ -264,18 +259,6 @@ def consider_held(statistics: FitStatistics, larger: FitStatistics, spreads: Map
         relative_covariance=relative,
         covariance=relative * np.outer(statistics.slopes, statistics.slopes),
     )
-
-
-def _inflater(fit: FitResult) -> Inflater:
-    """Return what inflates the variances of a fit most."""
-    if fit.overdispersion == 1:
-        return "nothing"
-    by_reason: dict[Inflater, float] = {
-        "coloured residuals": float(fit.autocorrelation_inflation.max()),
-        "drops that disagree": fit.disagreement,
-        "large and small motions that disagree": fit.disagreement_in_time,
-    }
-    return max(by_reason, key=lambda reason: by_reason[reason])
 
 
 def _directions(fit: FitResult, inflation: float) -> tuple[Real, Real]:

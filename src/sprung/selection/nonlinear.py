@@ -19,6 +19,7 @@ from sprung.selection.from_ordinary_vehicle import (
     select_from_ordinary_vehicle,
 )
 from sprung.selection.linear_terms import FLEXIBLE_BODIES
+from sprung.selection.nonlinear_terms import DAMPER_LAW
 from sprung.selection.scoring import score_terms
 from sprung.selection.search import ModelSearch
 from sprung.selection.stepwise import (
@@ -90,13 +91,18 @@ def _searches(
     """Yield the searches from every base, the simplest first."""
     found = search.structure
     plain = replace(
-        plain, stop_gap=found.stop_gap, engine_frequency=found.engine_frequency, engine_place=found.engine_place
+        plain,
+        stop_gap=found.stop_gap,
+        knee_ratio=found.knee_ratio,
+        engine_frequency=found.engine_frequency,
+        engine_place=found.engine_place,
     )
     is_plain = plain.names == search.structure.names
     simplest = search if is_plain else search.refit(plain)
     if ranked:
         yield partial(_from_base, simplest, ranked)
     if search.is_misfit_large:
+        yield partial(_with_law_of_dampers, search, plain)
         yield partial(_with_usual_terms, search, plain)
     if ranked and not is_plain:
         yield partial(_from_base, search, ranked)
@@ -131,6 +137,14 @@ def _without_counterparts(search: ModelSearch, plain: ModelStructure) -> list[Mo
 def _with_usual_terms(base: ModelSearch, plain: ModelStructure, so_far: ModelSearch) -> ModelSearch:
     """Add every usual term, to a body that is not rigid as well if the base has one, and leave out what is not needed."""
     return select_from_ordinary_vehicle(replace(base, steps=so_far.steps), plain)
+
+
+def _with_law_of_dampers(base: ModelSearch, plain: ModelStructure, so_far: ModelSearch) -> ModelSearch:
+    """Add the whole law of the dampers: each part of it alone shows little of what the others make."""
+    law = [term for term in plain.open_terms if term in DAMPER_LAW and term not in plain.terms]
+    if len(law) < len(DAMPER_LAW):
+        return so_far
+    return select_beside_usual_terms(replace(base, steps=so_far.steps), plain.with_terms((*plain.terms, *law)))
 
 
 def _refused_parts(search: ModelSearch) -> list[str]:

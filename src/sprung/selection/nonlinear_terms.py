@@ -11,8 +11,15 @@ from sprung.selection.model_term import ModelTerm, axles_of, of_axles
 from sprung.selection.structure import ModelStructure
 from sprung.vehicle import parameter_name
 
-BUMP_STOP = "bump-stop"
-"""A term with starts of its own."""
+BUMP_STOP, DAMPER_CURVE = "bump-stop", "damper-curve"
+"""Terms with starts of their own."""
+
+DAMPER_LAW = ("rebound", DAMPER_CURVE, "rounded-knee")
+"""Terms that together are the law of most dampers."""
+
+KNEE_RATIOS = (0.5, 2.0)
+"""Usual slope of a damper's curve beyond its knee over that before it: of most, whose valves open there, and of those that an
+orifice makes the harder the faster they move."""
 
 _TRAVEL = 0.002
 """m of travel at which a spring's force is that of a usual friction."""
@@ -27,8 +34,11 @@ _AIR_GROWTH = 2.3
 """Growth of an air spring's rate per compression by the height of its column: the polytropic exponent plus one."""
 
 _KNEE, _KNEE_LOSS, _ROUNDING = 0.12, 0.5, 0.3
-"""m/s at which the curve of a damper usually has its knee, the part of its slope that it usually loses there, and half the
+"""m/s at which the curve of a damper usually has its knee, the usual change of its slope there as a part of it, and half the
 width of its rounding as a part of the velocity."""
+
+_FAST = 0.3
+"""m/s: velocity of dampers in a drop, at which their damping is usual."""
 
 _SLOWEST_KNEE = 0.01
 """m/s: a knee at a lower velocity is the force of a friction."""
@@ -63,6 +73,16 @@ def _air_springs(name: str, height: str, levelled: str) -> ModelTerm:
 def _usual_rounding(own: Values, _: ModelStructure) -> Values:
     """Return over which velocities the knees of dampers are usually rounded: a valve opens little by little."""
     return {f"w_k{axle}": _ROUNDING * own.get(f"v_k{axle}", _KNEE) for axle in axles_of(own)}
+
+
+def _usual_curve(own: Values, structure: ModelStructure) -> Values:
+    """Return the usual curve of dampers; one that steepens has less damping before its knee, and as much in a usual drop."""
+    flat, steep = (_KNEE + (_FAST - _KNEE) * ratio for ratio in (KNEE_RATIOS[0], structure.knee_ratio))
+    usual: dict[str, float] = {}
+    for axle in axles_of(own):
+        damping, ratio = (parameter_name(letter, axle) for letter in ("c_s", "q"))
+        usual |= {damping: own[damping] * flat / steep, f"v_k{axle}": _KNEE, ratio: structure.knee_ratio}
+    return usual
 
 
 def _further_knee(number: int, word: str, before: str, ratio: str) -> ModelTerm:
@@ -151,13 +171,9 @@ NONLINEAR_TERMS = (
         ),
     ),
     ModelTerm(
-        "damper-curve",
+        DAMPER_CURVE,
         of_axles(lambda p, axle: 1 - p[parameter_name("q", axle)]),
-        usual=lambda own, _: {
-            name: value
-            for axle in axles_of(own)
-            for name, value in ((f"v_k{axle}", _KNEE), (parameter_name("q", axle), 1 - _KNEE_LOSS))
-        },
+        usual=_usual_curve,
         typical=_KNEE_LOSS,
         spread=1.6,
         negligible=0.02,

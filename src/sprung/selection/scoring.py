@@ -17,7 +17,7 @@ from sprung.estimation import (
 )
 from sprung.preprocess import FreeDecay
 from sprung.selection.linear_terms import DAMPER_MOUNT
-from sprung.selection.nonlinear_terms import BUMP_STOP
+from sprung.selection.nonlinear_terms import BUMP_STOP, DAMPER_CURVE, KNEE_RATIOS
 from sprung.selection.search import ModelSearch
 from sprung.selection.starts import (
     neutral_values,
@@ -61,7 +61,8 @@ def score_terms(search: ModelSearch, terms: Sequence[str]) -> tuple[ModelSearch,
     Returns
     -------
     search
-        With the structure's starts where the terms gain most: mounting of an engine, gap of bump stops.
+        With the structure's starts where the terms gain most: mounting of an engine, gap of bump stops, and whether the curves
+        of dampers flatten beyond their knee or steepen.
     scores
         Of every term.
     """
@@ -170,23 +171,29 @@ def _of_larger_model(search: ModelSearch, term: str) -> tuple[ModelSearch, tuple
     return replace(search, structure=best), score
 
 
-def _nonlinear(search: ModelSearch, terms: Sequence[str]) -> Scores:
+def _nonlinear(search: ModelSearch, terms: Sequence[str]) -> tuple[ModelSearch, Scores]:
+    """Score nonlinear terms; a curve of dampers tells by the way whether they flatten beyond their knee or steepen."""
     larger, own = search.with_terms(terms), search.fit.parameters
     candidates = {term: TERMS[term].parameters(larger.tracks, larger.layout) for term in terms}
     tests = score_nonlinear_terms(search.fit, larger.nonlinear_models, neutral_values(larger, own), candidates)
-    return {term: (gain, abs(TERMS[term].size(own | estimates))) for term, (gain, estimates) in tests.items()}
+    ratios = [value for name, value in tests.get(DAMPER_CURVE, (0.0, {}))[1].items() if name.startswith("q")]
+    if ratios:
+        ratio = KNEE_RATIOS[sum(ratios) > len(ratios)]
+        search = replace(search, structure=replace(search.structure, knee_ratio=ratio))
+    return search, {term: (gain, abs(TERMS[term].size(own | estimates))) for term, (gain, estimates) in tests.items()}
 
 
 def _nonlinear_with_stops(search: ModelSearch, terms: Sequence[str]) -> tuple[ModelSearch, Scores]:
     """Score nonlinear terms; bump stops where they gain most, if they gain enough anywhere."""
     gaps = stop_gaps(search.structure, search.fit, search.decays) if BUMP_STOP in terms else []
     variants = [replace(search, structure=replace(search.structure, stop_gap=gap)) for gap in gaps] or [search]
-    scores = _nonlinear(variants[0], terms)
+    first, scores = _nonlinear(variants[0], terms)
     if scores.get(BUMP_STOP, (0.0, 0.0))[0] < search.required(BUMP_STOP):
-        return variants[0], scores
-    stops = [scores[BUMP_STOP], *(_nonlinear(variant, [BUMP_STOP])[BUMP_STOP] for variant in variants[1:])]
+        return first, scores
+    stops = [scores[BUMP_STOP], *(_nonlinear(variant, [BUMP_STOP])[1][BUMP_STOP] for variant in variants[1:])]
     best = max(range(len(stops)), key=lambda i: stops[i][0])
-    return variants[best], scores | {BUMP_STOP: stops[best]}
+    structure = replace(first.structure, stop_gap=variants[best].structure.stop_gap)
+    return replace(first, structure=structure), scores | {BUMP_STOP: stops[best]}
 
 
 def _stepped(search: ModelSearch, terms: Sequence[str]) -> Scores:
