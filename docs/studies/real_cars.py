@@ -172,6 +172,9 @@ log-uniform in the usual ranges (`real_kinds.py`).
 Each campaign: ten drops from 5 cm (buses 7 cm), five with ballast; {RATE:g} samples per second; noise
 {NOISE:g} m/s²; axle masses known within {WEIGHING:g} kg. The campaign file says nothing about the kind.
 
+*Knee* are dampers of which 20 to 60 % of the rate are left beyond the knee, *orifice* such that have 1.5 to 3 times as much
+there.
+
 *Seats* are two people side by side, each with a weight and a seat of his own. *Tall* cars have anti-roll bars and a centre of
 gravity 0.75 to 1 m high, of which the campaign file says nothing. *Usual* is everything at once that every car has: mount,
 curve, rubber, tyre, dry friction, sensors as they are; those are tilted and misplaced, have errors of gain, and loggers with

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from sprung.estimation import canonical_basis
+from sprung.estimation.problem import identifiable_equations
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -30,3 +31,12 @@ def test_equal_parts_do_not_wait_for_rounding_to_choose() -> None:
 
 def test_nothing_has_no_basis() -> None:
     assert canonical_basis(np.zeros((15, 0))).shape == (15, 0)
+
+
+@pytest.mark.parametrize("overflow", [np.nan, np.inf])
+def test_derivatives_that_overflow_lead_nowhere(overflow: float) -> None:
+    """The eigenvalues of such an information do not converge: the identification of a half-car rig ended so."""
+    information = np.diag([1e6, overflow, 1e3])
+    step, gain = identifiable_equations(information, np.array([1.0, overflow, 2.0]), np.eye(3)).step(1e-3)
+    assert not step.any()
+    assert gain == 0

@@ -62,6 +62,8 @@ def identifiable_subspace(information: Real) -> Real:
     ndarray
         Orthonormal columns, shape (direction, identifiable direction).
     """
+    if not np.isfinite(information).all():  # derivatives of a motion that runs away overflow: they determine nothing
+        return np.zeros((len(information), 0))
     eigenvalues, vectors = np.linalg.eigh(information)
     identifiable = eigenvalues >= least_information(eigenvalues)
     return np.eye(len(information)) if identifiable.all() else vectors[:, identifiable]
