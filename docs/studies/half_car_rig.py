@@ -24,17 +24,17 @@ from pages import arguments, figures, report_progress, run, write
 import sprung
 
 HALF_DISTANCE = 0.75
-"""m, of springs and sensors from the middle, of the rig's data sheet."""
+"""m, of springs and sensors from the middle, of the rig's data sheet; the recordings say where the springs are."""
 
-TERMS = ("tyre-damping", "friction", "uneven-friction", "interconnection")
-"""Model terms that the recordings need; the last two have to be stated, as no search tries them."""
+SPRINGS = 0.03
+"""Standard uncertainty of the half-distance of the springs, m."""
 
-UNDAMPED = "damped_0"
-"""The setting in which both wheels hop for seconds, so that differences of the sides' rates and damping show too."""
+TERMS = ("tyre-damping", "asymmetry", "friction", "uneven-friction", "interconnection")
+"""Model terms that the recordings need; uneven friction and interconnection have to be stated, as no search tries them."""
 
-ALIKE: Mapping[str, float] = {"y_s": 0.005, "d_ks": 200.0, "d_kt": 3e3}
-"""Standard uncertainties within which both sides are built alike, SI, some 1 %: without them the differences of rates stand for
-what else the model lacks."""
+ALIKE: Mapping[str, float] = {"y_s": 0.005, "d_ks": 200.0, "d_kt": 1e4}
+"""Standard uncertainties within which both sides are built alike, SI: some 1 %, tyres 3 %. Without them the differences stand
+for what else the model lacks."""
 
 WHEEL = (80.0, 40.0)
 """Unsprung mass and its standard uncertainty, kg: displacements hardly tell it from the gains of the wheels' sensors. The data
@@ -47,7 +47,7 @@ sensors, so that the left ones are taken to be right."""
 END = 3.99
 """s of each recording that are used: the shortest are no longer, and in the others hardly anything moves afterwards."""
 
-SAME_WITH_LOAD = ("k_t", "m_u", "c_t", "y_s", "d_ks", "d_kt", "d_cs")
+SAME_WITH_LOAD = ("k_t", "m_u", "c_t", "t", "y_s", "d_ks", "d_kt", "d_cs")
 """What an added mass does not change: it is that of the same setting without it, within its error; and the spring rate, which
 sets the scale, exactly."""
 
@@ -72,16 +72,18 @@ def identified(path: str) -> tuple[str, dict[str, Any]]:
     """Identify one setting, without a load and then with each."""
     draft = Path(path)
     loads = [load["name"] for load in tomllib.loads(draft.read_text(encoding="utf-8")).get("load", [])]
-    known: dict[str, Any] = {"m_s": MASS, "t": HALF_DISTANCE, "m_u": {"value": WHEEL[0], "std": WHEEL[1]}}
-    if draft.parent.name == UNDAMPED:
-        known |= {name: {"value": 0.0, "std": std} for name, std in ALIKE.items()}
+    half_distance = {"value": HALF_DISTANCE, "std": SPRINGS}
+    known: dict[str, Any] = {"m_s": MASS, "t": half_distance, "m_u": {"value": WHEEL[0], "std": WHEEL[1]}}
+    known |= {name: {"value": 0.0, "std": std} for name, std in ALIKE.items()}
     found = {"empty": outcome_of(sprung.identify(completed(draft, "empty", known)))}
     estimates = found["empty"]["parameters"]
     if estimates["k_s"][0] is not None:
         same = {
-            name: {"value": value, "std": std} for name, (value, std) in estimates.items() if name in SAME_WITH_LOAD
+            name: {"value": value, "std": std}
+            for name, (value, std) in estimates.items()
+            if name in SAME_WITH_LOAD and value is not None
         }
-        same |= {"k_s": estimates["k_s"][0], "t": HALF_DISTANCE}
+        same |= {"k_s": estimates["k_s"][0]}
         for load in loads:
             found[load] = outcome_of(sprung.identify(completed(draft, load, same)))
     return draft.parent.name, found
@@ -91,8 +93,7 @@ def completed(draft: Path, load: str, known: Mapping[str, Any]) -> Path:
     """Write a campaign file of the drops with one load, as if they were empty, with the gaps of the draft filled."""
     document = tomllib.loads(draft.read_text(encoding="utf-8"))
     document["known"] = dict(known)
-    terms = (*TERMS, "asymmetry") if draft.parent.name == UNDAMPED else TERMS
-    document["model"] = {"tracks": "shared", "extras": list(terms)}
+    document["model"] = {"tracks": "shared", "extras": list(TERMS)}
     document.pop("load", None)
     document["drop"] = [
         {**drop, "load": "empty", "window": [0.0, END]} for drop in document["drop"] if drop["load"] == load

@@ -69,7 +69,7 @@ class ModelStructure:
     stop_gap
         Compression at which bump stops are met, where a fit begins, m.
     knee_ratio
-        Slope of the dampers' curves beyond their knee over that before it, where a fit begins.
+        Slope of the dampers' curves beyond their knee over that before it, where a fit begins, dimensionless.
     engine_frequency, engine_place
         Natural frequency, Hz, of an engine on its mounts and its place forward of the front axle, m, where a fit begins.
     body_frequency
