@@ -24,7 +24,7 @@ from pages import arguments, figures, report_progress, run, write
 import sprung
 
 HALF_DISTANCE = 0.75
-"""m, of springs and sensors from the middle, of the rig's data sheet; the recordings say where the springs are."""
+"""m, of springs and sensors from the middle, of the rig's data sheet; that of the springs is left open."""
 
 SPRINGS = 0.03
 """Standard uncertainty of the half-distance of the springs, m."""

@@ -78,8 +78,8 @@ def test_an_ordinary_damper_that_steepens_has_its_usual_force_in_a_drop() -> Non
     """Half the slope beyond 0.12 m/s, or twice: at 0.3 m/s both exert the same force."""
     structure = choose_structure(sprung.simulate(TABLE_1_CAR, duration=1.0), "shared", ("damper-curve",))
     forces = []
-    for ratio in KNEE_RATIOS:
-        values, _ = ordinary_vehicle(replace(structure, knee_ratio=ratio))
+    for steepen, ratio in enumerate(KNEE_RATIOS):
+        values, _ = ordinary_vehicle(replace(structure, dampers_steepen=bool(steepen)))
         assert values["q_f"] == ratio
         forces.append(values["c_sf"] * (values["v_kf"] + ratio * (0.3 - values["v_kf"])))
     assert forces[0] == pytest.approx(forces[1], rel=1e-12)

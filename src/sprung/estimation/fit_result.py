@@ -167,7 +167,7 @@ class FitResult:
     @cached_property
     def disagreement(self) -> float:
         """Factor by which drops that contradict each other inflate variances; 1 where not significantly."""
-        return birge_ratio(*self.problem.by_drop(self.iterate))
+        return birge_ratio(*self._scores_by_drop)
 
     @cached_property
     def disagreement_in_time(self) -> float:
@@ -192,7 +192,7 @@ class FitResult:
         if len({decay.rate for decay in self.decays}) == 1:
             count = independent_records(self.residuals, self.fitted, self.weights, coloured) / len(self.decays)
             coloured = coloured / count if coloured > 1 else 1.0
-            disagreement = max(disagreement, birge_ratio(*self.problem.by_drop(self.iterate), count))
+            disagreement = max(disagreement, birge_ratio(*self._scores_by_drop, count))
         by_reason: dict[Inflater, float] = {
             "coloured residuals": coloured,
             "drops that disagree": disagreement,
@@ -207,7 +207,12 @@ class FitResult:
 
         In units of its standard errors, squared and summed, shape (drop,); and in how many directions it has information.
         """
-        return drop_corrections(*self.problem.by_drop(self.iterate))
+        return drop_corrections(*self._scores_by_drop)
+
+    @cached_property
+    def _scores_by_drop(self) -> tuple[Real, Real]:
+        """Gradient and information of each drop in the null space of the constraints."""
+        return self.problem.by_drop(self.iterate)
 
     @cached_property
     def states(self) -> Real:

@@ -93,7 +93,7 @@ def _searches(
     plain = replace(
         plain,
         stop_gap=found.stop_gap,
-        knee_ratio=found.knee_ratio,
+        dampers_steepen=found.dampers_steepen,
         engine_frequency=found.engine_frequency,
         engine_place=found.engine_place,
     )

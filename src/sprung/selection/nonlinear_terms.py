@@ -77,11 +77,12 @@ def _usual_rounding(own: Values, _: ModelStructure) -> Values:
 
 def _usual_curve(own: Values, structure: ModelStructure) -> Values:
     """Return the usual curve of dampers; one that steepens has less damping before its knee, and as much in a usual drop."""
-    flat, steep = (_KNEE + (_FAST - _KNEE) * ratio for ratio in (KNEE_RATIOS[0], structure.knee_ratio))
+    ratio = KNEE_RATIOS[structure.dampers_steepen]
+    flat, present = (_KNEE + (_FAST - _KNEE) * slope for slope in (KNEE_RATIOS[0], ratio))
     usual: dict[str, float] = {}
     for axle in axles_of(own):
-        damping, ratio = (parameter_name(letter, axle) for letter in ("c_s", "q"))
-        usual |= {damping: own[damping] * flat / steep, f"v_k{axle}": _KNEE, ratio: structure.knee_ratio}
+        damping = parameter_name("c_s", axle)
+        usual |= {damping: own[damping] * flat / present, f"v_k{axle}": _KNEE, parameter_name("q", axle): ratio}
     return usual
 
 

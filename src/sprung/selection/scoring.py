@@ -17,7 +17,7 @@ from sprung.estimation import (
 )
 from sprung.preprocess import FreeDecay
 from sprung.selection.linear_terms import DAMPER_MOUNT
-from sprung.selection.nonlinear_terms import BUMP_STOP, DAMPER_CURVE, KNEE_RATIOS
+from sprung.selection.nonlinear_terms import BUMP_STOP, DAMPER_CURVE
 from sprung.selection.search import ModelSearch
 from sprung.selection.starts import (
     neutral_values,
@@ -178,8 +178,7 @@ def _nonlinear(search: ModelSearch, terms: Sequence[str]) -> tuple[ModelSearch, 
     tests = score_nonlinear_terms(search.fit, larger.nonlinear_models, neutral_values(larger, own), candidates)
     ratios = [value for name, value in tests.get(DAMPER_CURVE, (0.0, {}))[1].items() if name.startswith("q")]
     if ratios:
-        ratio = KNEE_RATIOS[sum(ratios) > len(ratios)]
-        search = replace(search, structure=replace(search.structure, knee_ratio=ratio))
+        search = replace(search, structure=replace(search.structure, dampers_steepen=sum(ratios) > len(ratios)))
     return search, {term: (gain, abs(TERMS[term].size(own | estimates))) for term, (gain, estimates) in tests.items()}
 
 

@@ -68,8 +68,8 @@ class ModelStructure:
         Whether wheels may be off the ground, so that the ground is a force beside the others.
     stop_gap
         Compression at which bump stops are met, where a fit begins, m.
-    knee_ratio
-        Slope of the dampers' curves beyond their knee over that before it, where a fit begins, dimensionless.
+    dampers_steepen
+        Whether the curves of dampers steepen beyond their knee, where a fit begins; else they flatten, as most do.
     engine_frequency, engine_place
         Natural frequency, Hz, of an engine on its mounts and its place forward of the front axle, m, where a fit begins.
     body_frequency
@@ -96,7 +96,7 @@ class ModelStructure:
     low_pass: LowPass | None = None
     unilateral_tyres: bool = False
     stop_gap: float = 1.0
-    knee_ratio: float = 0.5
+    dampers_steepen: bool = False
     engine_frequency: float = USUAL_ENGINE_FREQUENCY
     engine_place: float = 0.0
     body_frequency: float = 12.0
