@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from scipy.signal import lfilter
+from scipy.signal import lfilter, lfilter_zi
 
 from sprung.estimation import LowPass, SampledLowPass, unexplained_squares
 
@@ -35,6 +35,19 @@ def test_slow_motions_come_later_by_what_is_left_of_its_delay(corner: float) -> 
     found = sampled.filtered(np.sin(2 * np.pi * time)[None])[0]
     np.testing.assert_allclose(found[200:-20], np.sin(2 * np.pi * (time - sampled.remaining_delay))[200:-20], atol=5e-4)
     assert abs(sampled.remaining_delay) <= 0.5 / RATE
+
+
+@pytest.mark.parametrize(("finer", "samples"), [(1, 200), (3, 20), (4, 129)])
+def test_samples_of_what_is_sampled_faster_are_those_behind_the_filter(finer: int, samples: int) -> None:
+    """Against SciPy's filter at the higher rate; blocks of samples that the signal fills and that it does not."""
+    sampled, fast = SampledLowPass.of(LOGGER, RATE), SampledLowPass.of(LOGGER, finer * RATE)
+    signals = np.random.default_rng(2).standard_normal((2, 3, finer * (samples - 1) + 1)).cumsum(axis=-1)
+    numerator, denominator = fast.coefficients
+    at_rest = lfilter_zi(numerator, denominator) * signals[..., :1]
+    expected = lfilter(numerator, denominator, signals, axis=-1, zi=at_rest)[0][..., ::finer]
+    found = sampled.filtered(signals, finer)
+    np.testing.assert_allclose(found[..., : -sampled.lag], expected[..., sampled.lag :], atol=1e-11)
+    np.testing.assert_array_equal(found[..., -sampled.lag :], 0.0)
 
 
 def test_what_it_remembers_of_earlier_motions_is_free() -> None:

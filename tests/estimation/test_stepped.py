@@ -360,10 +360,10 @@ def test_a_step_gains_what_is_expected_of_it_where_initial_states_are_not_at_the
     assert gain == pytest.approx(expected, rel=0.3)
 
 
-def test_a_drop_whose_initial_state_loses_goes_a_part_of_the_way(
+def test_a_drop_whose_initial_state_loses_is_damped_more(
     campaign: Campaign, decays: tuple[FreeDecay, ...], plain: ModelStructure, optimum: FitResult
 ) -> None:
-    """As where friction turns round: whole steps of one drop would lead across its optimum again and again."""
+    """Whole steps of it would lose again and again; the damped one leaves out only what its record hardly shows."""
     larger = plain.with_terms(("friction",))
     values = np.array(
         [(optimum.parameters | {"F_f": 0.0, "F_r": 0.0, "s_f": 2e5, "s_r": 2e5})[n] for n in larger.names]
@@ -374,19 +374,20 @@ def test_a_drop_whose_initial_state_loses_goes_a_part_of_the_way(
     tried: list[np.ndarray] = []
 
     class Bent(TimeSteppingAt):
-        """Where the second drop ends far from its prior, whatever is tried."""
+        """Where the whole step of the second drop ends far from its prior."""
 
         def _moved_by(self, values: np.ndarray, states: np.ndarray) -> TimeSteppingAt:
-            tried.append(states)
+            tried.append(states.copy())
             moved = super()._moved_by(values, states)
             begin = moved.stepped.begin.copy()
-            begin[1, 0] += 1e3 * objective.prior_std[0]
+            begin[1, 0] += 1e3 * objective.prior_std[0] * (len(tried) == 1)
             return replace(moved, stepped=replace(moved.stepped, begin=begin))
 
     at = objective.at(values, np.full(8, 0.02**-2))
-    Bent(at.stepped, at.weights).moved(values)
-    whole, part = tried
-    np.testing.assert_array_equal(np.delete(part, 1, axis=0), np.delete(whole, 1, axis=0))
-    shares = part[1, :14] / whole[1, :14]
-    np.testing.assert_allclose(shares, shares[0], rtol=1e-9)
-    assert 0 < shares[0] < 1
+    moved = Bent(at.stepped, at.weights).moved(values)
+    whole, damped = tried
+    np.testing.assert_array_equal(np.delete(damped, 1, axis=0), np.delete(whole, 1, axis=0))
+    assert (damped[1] != whole[1]).any()
+    # A damping of one thousandth takes so much at the most from what the whole step gains, but along what is hardly shown.
+    promised = objective.at(values, at.weights)._normal_equations[1][1, len(values) :] @ whole[1]
+    assert (at._costs - moved._costs)[1] > 0.9 * promised

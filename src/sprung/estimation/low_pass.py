@@ -11,6 +11,7 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 from scipy.signal import butter, lfilter, lfilter_zi
 
@@ -22,6 +23,9 @@ HIGHEST_CORNER = 0.4
 
 _FREQUENCIES, _EXACT = 200, 1e3
 """How many frequencies a sampled low-pass is fitted at, and by how much more the response at rest weighs than the others."""
+
+_BLOCK = 64
+"""Samples that are filtered by one product of matrices."""
 
 _FORGOTTEN = 1e-6
 """Part of what a low-pass remembers from which its further directions count as none."""
@@ -121,16 +125,6 @@ class SampledLowPass(NamedTuple):
         """Return the low-pass with another corner, Hz, without the delay of this one."""
         return self if self.low_pass is None else self._replace(low_pass=self.low_pass._replace(corner=corner))
 
-    def at(self, finer: int) -> SampledLowPass:
-        """Return the low-pass of signals that are sampled faster, with the same delay.
-
-        Parameters
-        ----------
-        finer
-            How many times as fast.
-        """
-        return SampledLowPass(self.low_pass, finer * self.rate, finer * self.lag)
-
     @property
     def coefficients(self) -> tuple[Real, Real]:
         """Numerator and denominator of its transfer function in z⁻¹."""
@@ -138,23 +132,47 @@ class SampledLowPass(NamedTuple):
             return np.ones(1), np.ones(1)
         return _transfer_function(self.low_pass, self.rate)
 
-    def filtered(self, signals: Real) -> Real:
-        """Return signals behind the low-pass, which rested before at their first values; zero where they are not known.
+    def filtered(self, signals: Real, finer: int = 1) -> Real:
+        """Return the samples of signals behind the low-pass, which rested before at their first values.
 
         Parameters
         ----------
         signals
-            m/s², shape (..., time).
+            m/s², shape (..., time), sampled `finer` times as fast.
+        finer
+            A low-pass sees what lies between the samples that it gives.
+
+        Returns
+        -------
+        ndarray
+            m/s², shape (..., sample); zero where they are not known.
         """
+        samples = signals if finer == 1 else signals[..., ::finer]
         if self.low_pass is None:
-            return signals
-        known = signals.shape[-1] - self.lag
-        if self.low_pass.passes_all:
-            return np.concatenate([signals[..., :known], np.zeros_like(signals[..., known:])], axis=-1)
-        numerator, denominator = self.coefficients
-        before = lfilter_zi(numerator, denominator) * signals[..., :1]
-        later = np.asarray(lfilter(numerator, denominator, signals, axis=-1, zi=before)[0])
-        return np.concatenate([later[..., self.lag :], np.zeros_like(later[..., known:])], axis=-1)
+            return samples
+        known = samples.shape[-1] - self.lag
+        later = samples[..., :known] if self.low_pass.passes_all else self._passed(signals, finer)[..., self.lag :]
+        return np.concatenate([later, np.zeros_like(samples[..., known:])], axis=-1)
+
+    def _passed(self, signals: Real, finer: int) -> Real:
+        """Return one in so many samples of signals behind the low-pass and with its delay.
+
+        Blocks of samples are products of matrices, and only what the filter remembers goes from one to the next.
+        """
+        blocks = _blocks(self.low_pass, finer * self.rate, finer)
+        shape, time, length = signals.shape[:-1], signals.shape[-1], len(blocks.by_signal)
+        last = np.zeros((*shape, 1, length))
+        last[..., 0, : time % length] = signals[..., time - time % length :]
+        whole = sliding_window_view(signals, length, axis=-1)[..., ::length, :] if time >= length else last[..., :0, :]
+        given = np.concatenate([whole @ blocks.by_signal, last @ blocks.by_signal], axis=-2)
+        kept = len(blocks.at_rest)
+        memory = signals[..., :1] * blocks.at_rest
+        memories = np.empty((*given.shape[:-1], kept))
+        for block in range(given.shape[-2]):
+            memories[..., block, :] = memory
+            memory = memory @ blocks.memory_by_memory + given[..., block, -kept:]
+        passed: Real = given[..., :-kept] + memories @ blocks.by_memory
+        return passed.reshape(*shape, -1)[..., : -(-time // finer)]
 
     def free_signals(self, samples: int) -> Real:
         """Return what a record may show whatever the motion: an offset, and what the low-pass remembers of earlier motions.
@@ -188,6 +206,42 @@ class SampledLowPass(NamedTuple):
         decaying = np.exp(np.outer(np.arange(samples - self.lag), np.log(poles[poles.imag >= 0])))
         signals = np.hstack([np.ones((len(decaying), 1)), decaying.real, decaying.imag])
         return np.concatenate([signals, np.zeros((self.lag, signals.shape[1]))])
+
+
+class _Blocks(NamedTuple):
+    """What a filter makes of blocks of signals, and what it remembers after each.
+
+    Attributes
+    ----------
+    by_signal
+        One in so many of the samples behind it, and then its memory, by the samples of a block; shape (time, sample + memory).
+    by_memory
+        Samples by the memory at the start of the block, shape (memory, sample).
+    memory_by_memory
+        Memory at the end by that at the start, shape (memory, memory).
+    at_rest
+        Memory of a signal that has been 1 for ever, shape (memory,).
+    """
+
+    by_signal: Real
+    by_memory: Real
+    memory_by_memory: Real
+    at_rest: Real
+
+
+@lru_cache
+def _blocks(low_pass: LowPass, rate: float, every: int) -> _Blocks:
+    """Arrange a low-pass at a sampling rate for blocks, of which one in so many samples is wanted."""
+    numerator, denominator = _transfer_function(low_pass, rate)
+    at_rest = np.asarray(lfilter_zi(numerator, denominator))
+    samples, kept = max(_BLOCK // every, 1), len(at_rest)
+    length = samples * every
+    # Signals of a single 1, and no signal at all after each memory.
+    signals = np.concatenate([np.eye(length), np.zeros((kept, length))])
+    memories = np.concatenate([np.zeros((length, kept)), np.eye(kept)])
+    passed, after = lfilter(numerator, denominator, signals, axis=-1, zi=memories)
+    wanted = passed[:, ::every]
+    return _Blocks(np.hstack([wanted, after])[:length], wanted[length:], after[length:], at_rest)
 
 
 @lru_cache

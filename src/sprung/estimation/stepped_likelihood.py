@@ -23,6 +23,8 @@ _FOLLOWING = 1e-5
 _STATE_STEPS, _STATE_GAIN = 20, 1e-2
 """Gauss-Newton steps of initial states alone, at the most, and gain in twice the log-likelihood below which they end."""
 
+_DAMPED_AGAIN, _MORE_DAMPED = 3, 100.0
+"""How many times a drop whose initial state lost is damped more, and by what factor each time."""
 
 _MOSTLY = 0.8
 """Part of the expected gain that initial states promise, from which a loss is taken for theirs."""
@@ -69,17 +71,14 @@ class TimeSteppingAt:
     def moved(self, values: Real, damping: float = 0.0, /) -> TimeSteppingAt:
         """Return the likelihood at other parameter values, with the initial states that should explain the records there.
 
-        Where friction turns round as it begins to move, a whole step of an initial state may lead across its optimum and lose
-        what it should gain: such a drop goes a part of the way, to the vertex of the parabola through what is known of it.
+        Along combinations of initial states that the records hardly show, and where friction turns round as it begins to move,
+        a whole step may go farther than derivatives tell. A drop that loses by it takes a more damped one.
         """
         information, gradient = self._normal_equations
         parameters = len(self.values)
         change = values - self.values
-        own, stepping = (
-            self._damped(part)[:, parameters:, parameters:] for part in (min(damping, _FOLLOWING), damping)
-        )
-        following = -solve_normal_equations(own, information[:, parameters:, :parameters] @ change[:, None])[:, :, 0]
-        step = solve_normal_equations(stepping, gradient[:, parameters:, None])[:, :, 0]
+        following = self._solved(min(damping, _FOLLOWING), -information[:, parameters:, :parameters] @ change[:, None])
+        step = self._solved(damping, gradient[:, parameters:, None])
         whole = self._moved_by(values, following + step)
         if not whole._cost > self._cost:
             return whole
@@ -87,12 +86,21 @@ class TimeSteppingAt:
             _expected_gain(information, gradient, np.hstack([np.tile(change, (len(step), 1)), states]))
             for states in (following, following + step)
         )
-        promised, lost = expected - without, expected - (self._costs - whole._costs)
-        if promised.sum() < _MOSTLY * expected.sum():
+        if (expected - without).sum() < _MOSTLY * expected.sum():
             return whole
-        loses = (promised > 0) & (lost > promised)
-        part = np.divide(promised, promised + lost, out=np.ones_like(lost), where=loses)
-        return self._moved_by(values, following + part[:, None] * step)
+        for _ in range(_DAMPED_AGAIN):
+            damping = _MORE_DAMPED * max(damping, _FOLLOWING)
+            loses = self._costs - whole._costs < np.minimum(without, expected)
+            if not loses.any():
+                break
+            step[loses] = self._solved(damping, gradient[:, parameters:, None])[loses]
+            whole = self._moved_by(values, following + step)
+        return whole
+
+    def _solved(self, damping: float, right: Real) -> Real:
+        """Return what the damped information of the initial states makes of (drop, state, 1), shape (drop, state)."""
+        parameters = len(self.values)
+        return solve_normal_equations(self._damped(damping)[:, parameters:, parameters:], right)[:, :, 0]
 
     def _moved_by(self, values: Real, states: Real) -> TimeSteppingAt:
         """Return the likelihood at other parameter values, initial states and memories moved by so much."""

@@ -131,7 +131,7 @@ class SteppedMotion:
 
     def _passed(self, low_pass: SampledLowPass, readings: Real) -> Real:
         """Return samples of readings behind a low-pass, shape (..., time)."""
-        return low_pass.at(self._of_sample).filtered(readings)[..., :: self._of_sample]
+        return low_pass.filtered(readings, self._of_sample)
 
     def _differentiate_by_corner(self, drop: int, corner: float) -> Real:
         """Differentiate what the records of a drop show by the corner: of the motion, and of what the low-pass remembers.

@@ -54,6 +54,10 @@ _OF_ELIMINATED = 1e-5
 less is known, they would go farther than derivatives tell.
 """
 
+_MOST_OF_ELIMINATED = 1e-2
+"""The same at the most: it rises while steps gain little of what is expected, until only those combinations count that go where
+derivatives tell."""
+
 Point = TypeVar("Point")
 
 
@@ -178,19 +182,21 @@ def maximise(
     -------
     Maximum
     """
-    point, before, idle = start, np.inf, 0
+    point, before, idle, of_eliminated = start, np.inf, 0, _OF_ELIMINATED
     for steps in range(most_steps):
-        equations = problem.normal_equations(point, _OF_ELIMINATED)
+        equations = problem.normal_equations(point, of_eliminated)
         if stop is not None and stop(point, equations):
             return Maximum(point, steps, converged=False)
         if _has_converged(equations, damping, tolerance):
             return Maximum(point, steps, converged=True)
-        found = _gaining_step(problem, point, equations, damping, longest_step, tolerance, cautious)
+        found = _gaining_step(problem, point, equations, damping, of_eliminated, longest_step, tolerance, cautious)
         if found is None:
             # Not even the shortest step gains: without noise rounding leaves no more.
             damped = problem.normal_equations(point, _MOST_DAMPING)
             return Maximum(point, steps, converged=damped.step(_MOST_DAMPING)[1] < _STALLED)
         point, damping, gain, realised = found
+        if realised < _POOR * gain:
+            of_eliminated = min(_RAISED * of_eliminated, _MOST_OF_ELIMINATED)
         crawls = gain < _NEAR and realised < _CRAWL * gain
         idle = idle + 1 if realised < tolerance or crawls else 0
         # What the steps to come will gain, if they go on shrinking as the last two did.
@@ -206,6 +212,7 @@ def _gaining_step(
     point: Point,
     equations: NormalEquations,
     damping: float,
+    least_of_eliminated: float,
     longest: float,
     tolerance: float,
     cautious: bool,
@@ -221,7 +228,7 @@ def _gaining_step(
     first, raised = True, _EASED if cautious else _RAISED
     while damping < _MOST_DAMPING:
         # They follow the others, and are nearly linear: their whole step is shortened only where it loses.
-        of_eliminated = _OF_ELIMINATED if first else max(_OF_ELIMINATED, damping)
+        of_eliminated = least_of_eliminated if first else max(least_of_eliminated, damping)
         if not first:
             equations = problem.normal_equations(point, of_eliminated)
         step, expected = equations.step(damping, longest)

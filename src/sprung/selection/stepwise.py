@@ -189,13 +189,18 @@ def _try_scored(search: ModelSearch, tried: Collection[str]) -> tuple[ModelSearc
     for term in best:
         if term in fitted:
             continue
-        # Scores of a part of the decays hold for all of them if they are more than chance: a step in all of them tells.
-        if not search.is_overdispersed and (gain := take_first_step(search, term)[1]) < search.required(term):
-            search, fitted = search.recorded({term: gain}, False, False), [*fitted, term]
-            continue
+        first = None
+        if not search.is_overdispersed:
+            # Scores of a part of the decays hold for all of them if they are more than chance: a step in all of them tells.
+            stepped, gain = take_first_step(search, term)
+            against = stepped.veto(term) if stepped.fit.converged else ""
+            if against or gain < search.required(term):
+                search, fitted = search.recorded({term: gain}, bool(against), False, against), [*fitted, term]
+                continue
+            first = stepped.fit if stepped.fit.converged else None
         laws = _laws_of_part(term, untried)
         fitted += laws
-        tested = try_likeliest(search, laws)
+        tested = try_term(search, term, first=first) if laws == [term] else try_likeliest(search, laws)
         if tested.structure is not search.structure:
             return confirm_low_pass(tested), fitted
         search = tested

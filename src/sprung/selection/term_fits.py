@@ -134,7 +134,8 @@ def take_first_step(search: ModelSearch, term: str) -> tuple[ModelSearch, float]
     if first.fit.loglikelihood < search.fit.loglikelihood:
         first = first.refit(first.structure, most=_STEPS_FROM_BELOW)
     gain = 2 * (first.fit.loglikelihood - search.fit.loglikelihood) + WORTH_A_FIT * first.fit.remaining_gain
-    return first, gain / search.discount_of(first.fit)
+    # What the fit so far would still gain by itself is not gained by the term.
+    return first, (gain - search.fit.remaining_gain) / search.discount_of(first.fit)
 
 
 def fit_linear_term(search: ModelSearch, term: str) -> ModelSearch:

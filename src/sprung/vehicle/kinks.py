@@ -77,20 +77,20 @@ class KinkForces:
         Shape (kink,) each.
     laws
         Of each law with kinks its kinks by its parameters, the rows of its elements, shape (element,), the parameters, shape
-        (parameter, element), and their positions among those of all laws.
-    of_laws
-        How many parameters all laws have.
+        (parameter, element), and their positions among the dependences of all forces on parameters.
+    dependences
+        How many there are.
     """
 
     row_of: Index
     number: int
     kinks: Kinks
     laws: Sequence[tuple[Callable[[Array], Kinks], Index, Array, Index]]
-    of_laws: int
+    dependences: int
 
     @classmethod
     def of(
-        cls, laws: Sequence[tuple[Callable[[Array], Kinks], Index, Array, Index]], number: int, of_laws: int
+        cls, laws: Sequence[tuple[Callable[[Array], Kinks], Index, Array, Index]], number: int, dependences: int
     ) -> KinkForces:
         """Collect the kinks of laws of elements with a number of rows, arguments as the attributes."""
         parts, on = [np.zeros((5, 0))], [np.zeros(0, dtype=np.int64)]
@@ -98,19 +98,19 @@ class KinkForces:
             found = np.array(kinks_of(parameters))
             parts.append(found.reshape(5, -1))
             on.append(np.tile(at, found.shape[1]))
-        return cls(np.concatenate(on), number, Kinks(*np.concatenate(parts, 1)), laws, of_laws)
+        return cls(np.concatenate(on), number, Kinks(*np.concatenate(parts, 1)), laws, dependences)
 
     @cached_property
     def slopes(self) -> Kinks:
-        """Derivatives of the kinks by the parameters of all laws, shape (kink, of law) each."""
-        slopes = [np.zeros((5, 0, self.of_laws))]
+        """Derivatives of the kinks by parameters, shape (kink, dependence) each: of each, those of its row."""
+        slopes = [np.zeros((5, 0, self.dependences))]
         for kinks_of, _, parameters, positions in self.laws:
             by_parameter = np.array(differentiate_kinks(kinks_of, parameters))
             _, _, kinks, elements = by_parameter.shape
-            whole = np.zeros((5, kinks, elements, self.of_laws))
+            whole = np.zeros((5, kinks, elements, self.dependences))
             for which, columns in enumerate(positions):
                 whole[:, :, np.arange(elements), columns] += by_parameter[:, which]
-            slopes.append(whole.reshape(5, -1, self.of_laws))
+            slopes.append(whole.reshape(5, -1, self.dependences))
         return Kinks(*np.concatenate(slopes, 1))
 
     @cached_property
@@ -199,7 +199,7 @@ class KinkForces:
         by_before, by_after
             Derivatives by these, to which those of the kinks are added in place, shape (..., 2 row).
         by_parameter
-            Likewise by the parameters of the laws, shape (..., row, of law).
+            Likewise of each dependence on a parameter, shape (..., dependence).
         """
         ends = self.arguments(before), self.arguments(after)
         # Few steps pass a kink: only these are computed.
@@ -224,7 +224,7 @@ class KinkForces:
             of_parameters += by_end[:, None] * moved
             np.add.at(total, travel, by_end * kinks.by_travel)
             np.add.at(total, rate, by_end * kinks.by_rate)
-        np.add.at(by_parameter, travel, of_parameters)
+        np.add.at(by_parameter, tuple(step), of_parameters)
 
 
 def hinge(above: Array, position: Array, width: Array) -> tuple[Array, Array, Array, Array]:

@@ -36,6 +36,34 @@ _NODES = 12
 """Of Gauss-Legendre quadrature over a step: exact to 1e-7 for decays of ten times the step's inverse, to rounding for usual."""
 
 
+class Dependences(NamedTuple):
+    """Which of some forces or memories follow which parameters: each pair once.
+
+    Attributes
+    ----------
+    which
+        Positions of the forces or memories, shape (dependence,).
+    parameters
+        Positions of the parameters, shape (dependence,).
+    """
+
+    which: Index
+    parameters: Index
+
+    @classmethod
+    def of(cls, elements: Sequence[tuple[Index, Index]]) -> Dependences:
+        """Collect the pairs of elements: their rows, shape (element,), and parameters, shape (parameter, element)."""
+        pairs = [np.stack(np.broadcast_arrays(which, positions), -1).reshape(-1, 2) for which, positions in elements]
+        which, parameters = np.unique(np.concatenate([np.zeros((0, 2), dtype=np.int64), *pairs]), axis=0).T
+        return cls(which, parameters)
+
+    def find(self, which: Index, parameters: Index) -> Index:
+        """Return the positions of pairs, which and parameters being of shapes that go together."""
+        size = 1 + max(self.parameters.max(initial=0), int(np.max(parameters, initial=0)))
+        found: Index = np.searchsorted(self.which * size + self.parameters, which * size + parameters)
+        return found
+
+
 class NonlinearForces(NamedTuple):
     """Nonlinear elements over one list of parameters, whose values are SI, shape (parameter,).
 
@@ -111,20 +139,27 @@ class NonlinearForces(NamedTuple):
         return len(self.memory_rows)
 
     @property
-    def of_laws(self) -> Index:
-        """Positions of the parameters that any law has, ascending, shape (of law,)."""
-        return np.unique(np.concatenate([positions.ravel() for *_, positions in self.laws]))
+    def dependences(self) -> Dependences:
+        """Which force follows which parameter by its laws: rows, and positions in the list."""
+        return Dependences.of([(np.arange(self.number)[at], positions) for _, at, _, positions in self.laws])
+
+    @property
+    def memory_dependences(self) -> Dependences:
+        """Which memory follows which parameter: memories, and positions in the list."""
+        return Dependences.of(
+            [(np.arange(self.memories)[own], positions) for law, _, own, positions in self.laws if law.has_memory]
+        )
 
     def at(self, values: Array) -> ForcesAt:
         """Return the forces at all parameters, SI, shape (parameter,)."""
-        of_laws = self.of_laws
+        every, dependences = np.arange(self.number), self.dependences
         bent = [
-            (law.kinks, np.arange(self.number)[at], values[positions], np.searchsorted(of_laws, positions))
+            (law.kinks, every[at], values[positions], dependences.find(every[at], positions))
             for law, at, _, positions in self.laws
             if law.kinks is not None
         ]
         others = tuple((law, at, own, values[positions]) for law, at, own, positions in self.laws if law.kinks is None)
-        return ForcesAt(self.number, others, KinkForces.of(bent, self.number, len(of_laws)))
+        return ForcesAt(self.number, others, KinkForces.of(bent, self.number, len(dependences.which)))
 
     def differentiate(self, values: Array, given: ElementInput) -> tuple[Array, Array]:
         """Return the derivatives of forces and of memories by the parameters of the laws.
@@ -139,18 +174,19 @@ class NonlinearForces(NamedTuple):
         Returns
         -------
         force, memory
-            By the parameters `of_laws`, shapes (..., row, of law) and (..., memory, of law).
+            Of the `dependences` and `memory_dependences`, shapes (dependence, ...).
         """
-        force = np.zeros((*given.travel.shape, len(self.of_laws)))
-        memory = np.zeros((*given.memory.shape, len(self.of_laws)))
+        of_forces, of_memories = self.dependences, self.memory_dependences
+        force = np.zeros((len(of_forces.which), *given.travel.shape[:-1]))
+        memory = np.zeros((len(of_memories.which), *given.travel.shape[:-1]))
         for law, at, own, positions in self.laws:
             of_force, of_memory = law.differentiate(values[positions], _part(given, law, at, own))
-            row_of = np.arange(self.number)[at].tolist()
-            for which, row in enumerate(np.searchsorted(self.of_laws, positions)):
-                for column, position in enumerate(row.tolist()):
-                    force[..., row_of[column], position] += of_force[which][..., column]
-                    if law.has_memory:
-                        memory[..., own.start + column, position] += of_memory[which][..., column]
+            entries = of_forces.find(np.arange(self.number)[at], positions)
+            for which, column in np.ndindex(*positions.shape):
+                force[entries[which, column]] += of_force[which][..., column]
+            entries = of_memories.find(np.arange(self.memories)[own], positions) if law.has_memory else entries[:0]
+            for which, column in np.ndindex(*entries.shape):
+                memory[entries[which, column]] += of_memory[which][..., column]
         return force, memory
 
 

@@ -20,6 +20,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.vehicle.force_laws import ElementForce, ElementInput
+from sprung.vehicle.many_inverses import SIDE_BY_SIDE, invert_many
+from sprung.vehicle.nonlinear import Dependences
 from sprung.vehicle.segments import cut_into_segments, segments_of, steps_of_segments
 from sprung.vehicle.stepping import Stepper, Trajectory, mean_rate_offset
 
@@ -145,11 +147,9 @@ def _differentiate_segments(
     forces, slopes = stepper.forces, _force_slopes(stepper, given)
     steps, (kinds, places, size) = len(motion) - 1, motion.shape[1:]
     rows, own = forces.number, forces.memory_rows
-    state, memories = size - 1 - rows, len(own)
-    start = state + memories
+    state, memories, start = size - 1 - rows, len(own), stepper.starts
     unknowns = start + len(stepper.values)
     geometry, driving = _driven(stepper.input_slopes, start), _driven(stepper.step_slopes, start)
-    by_parameter = start + forces.of_laws
     transition, by_state, by_force, input_by_force, input_by_surplus, directly_by_force, readable = (
         matrices.astype(np.float32)
         for matrices in (
@@ -170,10 +170,10 @@ def _differentiate_segments(
     def force_changes(k: int, inputs: Single, memory: Single, travel: Single, inverse: Single) -> tuple[Single, Single]:
         """Return changes of the forces, and of memories less those by the change of the travel over the step."""
         memory = slopes.kept[k] * memory - slopes.by_increment[k] * travel
-        memory[..., by_parameter] += slopes.of_memories[k]
+        slopes.of_memories.add_to(memory, k)
         right = slopes.by_travel[k] * inputs[:, :rows]
         right += slopes.by_rate[k] * inputs[:, rows:]
-        right[..., by_parameter] += slopes.of_forces[k]
+        slopes.of_forces.add_to(right, k)
         right[:, own] += slopes.by_memory[k] * memory
         return np.swapaxes(inverse @ np.swapaxes(right, 1, 2), 1, 2), memory
 
@@ -202,7 +202,7 @@ def _differentiate_segments(
         inputs += multiply(input_by_force, forced)
         pushing = forced
         if slopes.surplus is not None:
-            further = slopes.surplus.changes(k, at_start, inputs, by_parameter)
+            further = slopes.surplus.changes(k, at_start, inputs)
             # A surplus moves the end of its step a little. What else follows from that is of second order, and left out.
             moved = multiply(input_by_surplus, further)
             forced += slopes.by_rate[k + 1] * moved[:, rows:]
@@ -214,6 +214,32 @@ def _differentiate_segments(
     return readings, np.swapaxes(np.concatenate([changes[:, :state], memory], axis=1), 1, 2).astype(np.float64)
 
 
+class _SlopesByLaw(NamedTuple):
+    """Slopes of forces or memories by the parameters of their laws, at each step.
+
+    Attributes
+    ----------
+    rows, unknowns
+        Which they are, and by which unknown; shape (dependence,).
+    slopes
+        Shape (step, dependence, kind, place).
+    """
+
+    rows: Index
+    unknowns: Index
+    slopes: Single
+
+    @classmethod
+    def of(cls, dependences: Dependences, slopes: Array, start: int) -> _SlopesByLaw:
+        """Arrange slopes (dependence, step, kind, place) by parameters, before which so many other unknowns come."""
+        by_step = np.ascontiguousarray(np.swapaxes(slopes, 0, 1), dtype=np.float32)
+        return cls(dependences.which, start + dependences.parameters, by_step)
+
+    def add_to(self, changes: Single, k: int) -> None:
+        """Add those of a step to changes (kind, row, place, unknown)."""
+        changes[:, self.rows, :, self.unknowns] += self.slopes[k]
+
+
 class _SurplusSlopes(NamedTuple):
     """Derivatives of the surplus of each step.
 
@@ -222,14 +248,14 @@ class _SurplusSlopes(NamedTuple):
     by_start, by_end
         By travels and rates of all rows at both ends, ready to multiply changes, shape (step, kind, 2 row, place, 1).
     by_parameter
-        By the parameters of the laws, shape (step, kind, row, place, of law).
+        By the parameters of the laws.
     """
 
     by_start: Single
     by_end: Single
-    by_parameter: Single
+    by_parameter: _SlopesByLaw
 
-    def changes(self, k: int, at_start: Single, at_end: Single, by_parameter: Index) -> Single:
+    def changes(self, k: int, at_start: Single, at_end: Single) -> Single:
         """Return changes of the surplus of a step by those of travels and rates at its ends, and by the parameters.
 
         Parameters
@@ -238,12 +264,10 @@ class _SurplusSlopes(NamedTuple):
             The step.
         at_start, at_end
             Changes of travels and rates, shape (kind, 2 row, place, unknown).
-        by_parameter
-            Positions of the parameters of the laws among the unknowns.
         """
         both = self.by_start[k] * at_start + self.by_end[k] * at_end
         found: Single = np.add(*np.split(both, 2, axis=1))
-        found[..., by_parameter] += self.by_parameter[k]
+        self.by_parameter.add_to(found, k)
         return found
 
 
@@ -257,7 +281,7 @@ class _ForceSlopes(NamedTuple):
     by_increment, kept
         Of the memories, by the increment of the travel and by the memory at the start.
     of_forces, of_memories
-        By the parameters of the laws, shapes (step + 1, kind, row, place, of law) and (step + 1, kind, memory, place, of law).
+        By the parameters of the laws.
     surplus
         None where forces have none.
     """
@@ -267,8 +291,8 @@ class _ForceSlopes(NamedTuple):
     by_memory: Single
     by_increment: Single
     kept: Single
-    of_forces: Single
-    of_memories: Single
+    of_forces: _SlopesByLaw
+    of_memories: _SlopesByLaw
     surplus: _SurplusSlopes | None
 
 
@@ -281,7 +305,11 @@ def _force_slopes(stepper: Stepper, given: ElementInput) -> _ForceSlopes:
     by_travel[:, :, forces.memory_rows] += by_memory * by_increment
     of_forces, of_memories = forces.differentiate(stepper.values, given)
     surplus = _surplus_slopes(stepper, found, given, of_forces) if stepper.has_surplus else None
-    parameters = _for_parameters(of_forces), _for_parameters(of_memories)
+    start = stepper.starts
+    parameters = (
+        _SlopesByLaw.of(forces.dependences, of_forces, start),
+        _SlopesByLaw.of(forces.memory_dependences, of_memories, start),
+    )
     return _ForceSlopes(by_travel, _for_changes(found.by_rate), by_memory, by_increment, kept, *parameters, surplus)
 
 
@@ -297,7 +325,7 @@ def _surplus_slopes(stepper: Stepper, found: ElementForce, given: ElementInput, 
     given
         From `_cut`.
     of_forces
-        Derivatives of the forces by the parameters of the laws, shape (step + 1, kind, place, row, of law).
+        Derivatives of the forces by the parameters of the laws, shape (dependence, step + 1, kind, place).
 
     Returns
     -------
@@ -317,11 +345,14 @@ def _surplus_slopes(stepper: Stepper, found: ElementForce, given: ElementInput, 
     curved[..., :rows] -= (length / 12.0) * change[..., rows:]
     curved[..., rows:] += mean_rate_offset(start, change, length)
     of_means = ElementInput(curved[..., :rows], curved[..., rows:], given.increment[1:], given.memory[1:])
-    by_parameter = 2.0 * (stepper.forces.differentiate(stepper.values, of_means)[0] - of_forces[1:])
+    by_parameter = 2.0 * (stepper.forces.differentiate(stepper.values, of_means)[0] - of_forces[:, 1:])
     # Where a kink lies between both, their difference is not that of one slope.
-    by_parameter[kinks.lie_between(end, curved)] = 0.0
+    passed = kinks.lie_between(end, curved)[..., stepper.forces.dependences.which]
+    by_parameter = np.where(passed, 0.0, np.moveaxis(by_parameter, 0, -1))
     kinks.add_surplus_slopes(start, end, by_start, by_end, by_parameter)
-    return _SurplusSlopes(_for_changes(by_start), _for_changes(by_end), _for_parameters(by_parameter))
+    by_parameter = np.moveaxis(by_parameter, -1, 0)
+    of_parameters = _SlopesByLaw.of(stepper.forces.dependences, by_parameter, stepper.starts)
+    return _SurplusSlopes(_for_changes(by_start), _for_changes(by_end), of_parameters)
 
 
 def _inverses(by_force: Single, by_travel: Single, by_rate: Single) -> Single:
@@ -340,8 +371,13 @@ def _inverses(by_force: Single, by_travel: Single, by_rate: Single) -> Single:
         Shape (step, kind, place, row, row).
     """
     travel, rate = np.split(by_force[:, None], 2, axis=2)
-    effect = np.swapaxes(by_travel, 2, 3) * travel + np.swapaxes(by_rate, 2, 3) * rate
-    return np.asarray(np.linalg.inv(np.eye(by_force.shape[-1], dtype=np.float32) - effect), dtype=np.float32)
+    steps, kinds, rows, places = by_travel.shape[:4]
+    inverses = np.empty((steps, kinds, places, rows, rows), dtype=np.float32)
+    for some in np.array_split(np.arange(steps), max(steps * places // SIDE_BY_SIDE, 1)):
+        here = slice(some[0], some[-1] + 1)
+        effect = np.swapaxes(by_travel[here], 2, 3) * travel + np.swapaxes(by_rate[here], 2, 3) * rate
+        inverses[here] = invert_many(np.eye(rows, dtype=np.float32) - effect)
+    return inverses
 
 
 def _driven(slopes: Array, start: int) -> tuple[Single, slice]:
@@ -376,8 +412,3 @@ def _add_driven(results: Single, slopes: Single, columns: slice, arguments: Sing
 def _for_changes(slopes: Array) -> Single:
     """Return slopes (step, kind, place, row) so that they multiply changes (kind, row, place, unknown)."""
     return np.ascontiguousarray(np.swapaxes(slopes, 2, 3), dtype=np.float32)[..., None]
-
-
-def _for_parameters(slopes: Array) -> Single:
-    """Return slopes (step, kind, place, row, of law) so that they add to changes (kind, row, place, of law)."""
-    return np.ascontiguousarray(np.swapaxes(slopes, 2, 3), dtype=np.float32)

@@ -125,6 +125,11 @@ class Stepper:
             kind=np.zeros(int(np.sum(self.kind == kind)), dtype=np.int64),
         )
 
+    @property
+    def starts(self) -> int:
+        """Numbers from which a motion starts: of its state, and of its memories."""
+        return int(self.steps.shape[1]) + self.forces.memories
+
     @cached_property
     def forces_at(self) -> ForcesAt:
         """The nonlinear elements with their parameters."""
