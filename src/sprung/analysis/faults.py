@@ -35,6 +35,9 @@ from sprung.vehicle import SensorQuantity, sensor_unknown
 _FAR = 5.0
 """Standard uncertainties from which a sensor is not what is stated of it."""
 
+_SAME_MISFIT = 0.5
+"""Part of a misfit of which no fault explained any; one that explains all that is left would have explained so much then."""
+
 _IN_WORDS: Mapping[SensorQuantity, str] = {
     "gain": "gain",
     "x": "place",
@@ -52,6 +55,10 @@ def isolate_evident_faults(run: Analysis, progress: Progress) -> Analysis:
     first = explaining_term(run, consistency)
     if first is not None:
         return replace(run, first_term=first[0]).noted("isolate_evident_faults", f"{first[0]} is tried first", first[1])
+    if consistency == "misfit" and _was_none_found(run):
+        return run.noted(
+            "isolate_evident_faults", "faults are not looked for again", "none explained any of the same misfit"
+        )
     run = _with_isolated(run, consistency, progress)
     if not _is_evident(run.found):
         return run
@@ -117,6 +124,13 @@ def _explains(hypotheses: Sequence[Hypothesis]) -> bool:
 def _is_evident(hypotheses: Sequence[Hypothesis]) -> bool:
     """Whether hypotheses explain the recordings wholly, and say what is to be done."""
     return _explains(hypotheses) and all(one.remedy != "named" and one.is_specific for one in hypotheses)
+
+
+def _was_none_found(run: Analysis) -> bool:
+    """Whether no fault explained any of a misfit of which a good part is left: none will explain all of that."""
+    if run.isolated is None or run.isolated[1]:
+        return False
+    return replace(run.model, fit=run.isolated[0]).leaves_misfit(run.fit, _SAME_MISFIT)
 
 
 def _with_isolated(run: Analysis, consistency: Consistency | None, progress: Progress) -> Analysis:

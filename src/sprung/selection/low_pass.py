@@ -21,8 +21,8 @@ Real = NDArray[np.float64]
 _ORDER = 4
 """Of the anti-alias filters of loggers."""
 
-_CORNERS = (100.0, 160.0)
-"""Corners from which a fit begins, Hz; the second, which does little, where the first explains less than none."""
+_MILD, _USUAL = 160.0, 100.0
+"""Corners from which a fit begins, Hz: if there is any low-pass, one that does little explains more than none."""
 
 _COLOURED = 1.1
 """Overdispersion from which a low-pass is looked for: it moves what is left by little."""
@@ -36,6 +36,10 @@ _LOWEST = 25.0
 _FIRST, _ITERATIONS, _MOST = 1, 12, 100
 """Iterations after which a low-pass that is there explains more, as it moves the optimum by little; at the most until its
 corner is found; and of a whole fit."""
+
+_TELLS, _CERTAINLY = 2, 10.0
+"""Iterations after which a fit that is as free tells what it may reach, and by how many times what it is expected to gain still
+the one behind a low-pass is ahead of it then."""
 
 
 def select_low_pass(search: ModelSearch) -> ModelSearch:
@@ -59,10 +63,11 @@ def select_low_pass(search: ModelSearch) -> ModelSearch:
     search.progress(Step("looking for a low-pass of the loggers"))
     # Motions before a low-pass are stepped more finely: one at infinity does nothing else.
     without = _refit_behind(search, LowPass(np.inf, _ORDER), _FIRST, beginning_only=True)
-    tried = (_begin_behind(search, min(corner, 0.8 * _highest(search))) for corner in _CORNERS)
-    found = next((one for one in tried if one.gain_over(without) > 0), None)
-    if found is None:
+    mild = _begin_behind(search, min(_MILD, 0.8 * _highest(search)))
+    if not mild.gain_over(without) > 0:
         return search
+    usual = _begin_behind(search, min(_USUAL, 0.8 * _highest(search)))
+    found = max(usual, mild, key=lambda one: one.fit.loglikelihood)
     found = found.refit(found.structure, _ITERATIONS, beginning_only=True)
     if not _is_possible(found) or not _gains_enough(found, without):
         return search
@@ -72,7 +77,7 @@ def select_low_pass(search: ModelSearch) -> ModelSearch:
         found = max(found, lower, key=lambda one: one.fit.loglikelihood)
     found = _refit_behind(found, LowPass(corner_of(found), _ORDER), beginning_only=True)
     # What records may show behind it is free, as nothing tells what it remembers: without it a fit has to be as free.
-    free = _refit_behind(without, LowPass(corner_of(found), _ORDER, passes_all=True), beginning_only=True)
+    free = _as_free(without, found)
     # Where more is missing, the freedom explains some of that: it is enough to explain more, until all else is found.
     if not found.gain_over(free) > (0.0 if search.is_overdispersed else search.required_of_switch):
         return search
@@ -122,6 +127,15 @@ def corner_of(search: ModelSearch) -> float:
 def _highest(search: ModelSearch) -> float:
     """Return the corner in Hz from which a low-pass does nothing to any recording."""
     return HIGHEST_CORNER * min(decay.rate for decay in search.decays)
+
+
+def _as_free(without: ModelSearch, found: ModelSearch) -> ModelSearch:
+    """Fit a model without a low-pass with the same freedom; not to the end where it cannot become likelier than with it."""
+    free = LowPass(corner_of(found), _ORDER, passes_all=True)
+    begun = _refit_behind(without, free, _TELLS, beginning_only=True)
+    may_gain = _CERTAINLY * begun.fit.remaining_gain / begun.overdispersion
+    is_certain = found.gain_over(begun) > begun.required_of_switch + may_gain
+    return begun if begun.fit.converged or is_certain else begun.refit(begun.structure, beginning_only=True)
 
 
 def _is_possible(search: ModelSearch) -> bool:

@@ -205,10 +205,11 @@ def _stepped(search: ModelSearch, terms: Sequence[str]) -> Scores:
     # Behind a low-pass the motion between the samples that are left would be missed.
     rate, duration = (_RATE, _DURATION) if search.structure.low_pass is None else (np.inf, _BEHIND_LOW_PASS)
     decays, part = thinned(search.decays, rate, duration)
-    gains = {
-        term: gain / part for group in groups if group for term, gain in _score_together(search, decays, group).items()
-    }
-    return {term: (gain, TERMS[term].typical) for term, gain in gains.items()}
+    gains = {term: gain for group in groups if group for term, gain in _score_together(search, decays, group).items()}
+    # What a parameter gains by chance, its share of the noise, is as much in a part of the samples as in all of them.
+    chance = {term: float(len(brought)) for term, brought in _brought(search.with_terms(terms), terms).items()}
+    whole = {term: chance[term] + max(gain - chance[term], 0.0) / part for term, gain in gains.items()}
+    return {term: (gain, TERMS[term].typical) for term, gain in whole.items()}
 
 
 def _score_together(search: ModelSearch, decays: Sequence[FreeDecay], terms: Sequence[str]) -> dict[str, float]:

@@ -129,7 +129,9 @@ def take_first_step(search: ModelSearch, term: str) -> tuple[ModelSearch, float]
     if term == ENGINE:
         return search, np.inf
     first = search.refit(search.with_terms([term]), most=1)
-    if not np.isfinite(first.fit.loglikelihood):  # a motion without bounds
+    # A motion without bounds, or so far from the records that all of it would have to be found anew.
+    is_astray = search.structure.is_nonlinear and search.is_better_than(first.fit)
+    if is_astray or not np.isfinite(first.fit.loglikelihood):
         return first, -np.inf
     if first.fit.loglikelihood < search.fit.loglikelihood:
         first = first.refit(first.structure, most=_STEPS_FROM_BELOW)
