@@ -32,6 +32,10 @@ _FASTER = 4.0
 _POOR, _GOOD = 0.25, (0.75, 1.3)
 """Gain of a step, as a part of what was expected, up to which the damping rises, and within which it falls fast."""
 
+_FURTHEST = 8.0
+"""How many times as far as a step that gained more than expected a longer one goes at the most: to the vertex of the parabola
+through both gains, where along its way the likelihood bends less than the information says."""
+
 _LOWERED, _USUAL, _EASED, _RAISED = 100.0, 10.0, 3.0, 8.0
 """Factors by which the damping falls after a step that gained what was expected, after others that gained, and after these
 where the start is far away; and by which it rises after one that gained little."""
@@ -109,10 +113,15 @@ class NormalEquations(NamedTuple):
 
 def _has_converged(equations: NormalEquations, damping: float, tolerance: float) -> bool:
     """Whether less is left to gain than a tolerance, or little more by eliminated unknowns alone."""
-    if equations.eliminated >= max(tolerance, min(_OF_SECOND_ORDER * tolerance, _NEAR)):
+    if equations.eliminated >= _enough_of_eliminated(tolerance):
         return False
     # A damped step gains less than the Newton step: where it gains enough, there is no need of that one.
     return all(equations.step(of_step)[1] - equations.eliminated < tolerance for of_step in (damping, 0.0))
+
+
+def _enough_of_eliminated(tolerance: float) -> float:
+    """Return the gain that eliminated unknowns may leave, where all others leave no more than a tolerance."""
+    return max(tolerance, min(_OF_SECOND_ORDER * tolerance, _NEAR))
 
 
 class Maximisable(Protocol[Point]):
@@ -195,7 +204,9 @@ def maximise(
             damped = problem.normal_equations(point, _MOST_DAMPING)
             return Maximum(point, steps, converged=damped.step(_MOST_DAMPING)[1] < _STALLED)
         point, damping, gain, realised = found
-        if realised < _POOR * gain:
+        if 0 < equations.eliminated < _enough_of_eliminated(tolerance):
+            of_eliminated = _MOST_OF_ELIMINATED
+        elif realised < _POOR * gain:
             of_eliminated = min(_RAISED * of_eliminated, _MOST_OF_ELIMINATED)
         crawls = gain < _NEAR and realised < _CRAWL * gain
         idle = idle + 1 if realised < tolerance or crawls else 0
@@ -240,7 +251,12 @@ def _gaining_step(
             ratio = gain / max(expected, 1e-6 * gain, np.finfo(float).tiny)
             # The damping that this step needed is about what the next one will need.
             following = _next_damping(damping, ratio, cautious) if first or not cautious else damping / _EASED
-            return tried, following, max(expected, gain), gain
+            by, ends = max(expected, gain), [(tried, gain)]
+            if _GOOD[1] < ratio < 2 and not cautious:
+                further = _limited(step / max(2 - ratio, 1 / _FURTHEST), longest)
+                ends.append(problem.trial(point, further, of_eliminated))
+            tried, gain = max(ends, key=lambda end: end[1])
+            return tried, following, by, gain
         if first and np.isfinite(gain):
             back, _ = problem.normal_equations(tried, of_eliminated).step(damping, longest)
             second_point, further = problem.trial(tried, back, of_eliminated)
