@@ -93,6 +93,50 @@ class Lagging(NamedTuple):
         return tried, float(value - other)
 
 
+class Flatter(NamedTuple):
+    """Twice the log-likelihood -x², of which the information says that it bends so many times as much."""
+
+    times: float
+
+    def normal_equations(self, point: Real, _damping: float) -> NormalEquations:
+        return NormalEquations(self.times * np.eye(1), -point, np.eye(1), np.eye(1))
+
+    def trial(self, point: Real, step: Real, _damping: float) -> tuple[Real, float]:
+        return point + step, float(point[0] ** 2 - (point + step)[0] ** 2)
+
+
+@pytest.mark.parametrize("times", [2.0, 4.0, 7.0])
+def test_a_step_goes_on_where_less_bends_than_the_information_says(times: float) -> None:
+    """A step is too short by that factor, and gains 2 - 1/factor of what is expected: the vertex of the parabola is the end."""
+    found = maximise(Flatter(times), np.ones(1), tolerance=1e-9, damping=1e-12, most_steps=3)
+    assert found.converged
+    assert found.steps == 1
+    np.testing.assert_allclose(found.point, 0.0, atol=1e-9)
+
+
+class Hesitant(NamedTuple):
+    """An eliminated unknown that promises more than it gains, but for a damping of more than a thousandth."""
+
+    dampings: list[float]
+
+    def normal_equations(self, point: Real, damping: float) -> NormalEquations:
+        self.dampings.append(damping)
+        return NormalEquations(np.eye(1), -point, np.eye(1), np.eye(1), 2.0 if damping < 1e-3 else 1e-4)
+
+    def trial(self, point: Real, step: Real, _damping: float) -> tuple[Real, float]:
+        return point + step, float(point[0] ** 2 - (point + step)[0] ** 2) + 0.01
+
+
+def test_eliminated_unknowns_are_damped_more_while_steps_gain_little() -> None:
+    dampings: list[float] = []
+    found = maximise(Hesitant(dampings), np.full(1, 0.01), tolerance=1e-3, damping=1e-12, most_steps=20)
+    assert found.converged
+    assert dampings == sorted(dampings)
+    assert dampings[0] == pytest.approx(1e-5)
+    assert 1e-3 < dampings[-1] <= 1e-2
+    assert found.steps < 5
+
+
 @pytest.mark.parametrize("lag", [0.5, 3.0])
 def test_it_has_not_converged_before_eliminated_unknowns_have(lag: float) -> None:
     """Nothing is left to gain by x itself; undamped steps of what is eliminated lose where they begin far away.

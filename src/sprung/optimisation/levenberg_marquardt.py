@@ -234,7 +234,8 @@ def _gaining_step(
     the residuals, a step may gain many times what was expected at the old ones, and the steps to come likewise.
 
     In a curved valley the straight way leads up its wall, and only the next step down again, further along: where the first
-    step loses, one more is tried from there (the watchdog). No step is tried that would gain too little.
+    step loses, one more is tried from there (the watchdog). No step is tried that would gain too little. Where a step gains
+    more than expected, a longer one is tried as well.
     """
     first, raised = True, _EASED if cautious else _RAISED
     while damping < _MOST_DAMPING:
@@ -251,10 +252,11 @@ def _gaining_step(
             ratio = gain / max(expected, 1e-6 * gain, np.finfo(float).tiny)
             # The damping that this step needed is about what the next one will need.
             following = _next_damping(damping, ratio, cautious) if first or not cautious else damping / _EASED
-            by, ends = max(expected, gain), [(tried, gain)]
+            by: float = max(expected, gain)
+            ends = [(tried, gain)]
             if _GOOD[1] < ratio < 2 and not cautious:
-                further = _limited(step / max(2 - ratio, 1 / _FURTHEST), longest)
-                ends.append(problem.trial(point, further, of_eliminated))
+                longer = _limited(step / max(2 - ratio, 1 / _FURTHEST), longest)
+                ends.append(problem.trial(point, longer, of_eliminated))
             tried, gain = max(ends, key=lambda end: end[1])
             return tried, following, by, gain
         if first and np.isfinite(gain):
