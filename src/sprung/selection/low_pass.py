@@ -67,7 +67,7 @@ def select_low_pass(search: ModelSearch) -> ModelSearch:
     if not mild.gain_over(without) > 0:
         return search
     usual = _begin_behind(search, min(_USUAL, 0.8 * _highest(search)))
-    found = max(usual, mild, key=lambda one: one.fit.loglikelihood)
+    found = usual if usual.gain_over(without) > 0 else mild
     found = found.refit(found.structure, _ITERATIONS, beginning_only=True)
     if not _is_possible(found) or not _gains_enough(found, without):
         return search
@@ -132,10 +132,10 @@ def _highest(search: ModelSearch) -> float:
 def _as_free(without: ModelSearch, found: ModelSearch) -> ModelSearch:
     """Fit a model without a low-pass with the same freedom; not to the end where it cannot become likelier than with it."""
     free = LowPass(corner_of(found), _ORDER, passes_all=True)
-    begun = _refit_behind(without, free, _TELLS, beginning_only=True)
-    may_gain = _CERTAINLY * begun.fit.remaining_gain / begun.overdispersion
-    is_certain = found.gain_over(begun) > begun.required_of_switch + may_gain
-    return begun if begun.fit.converged or is_certain else begun.refit(begun.structure, beginning_only=True)
+    first = _refit_behind(without, free, _TELLS, beginning_only=True)
+    may_gain = _CERTAINLY * first.fit.remaining_gain / first.overdispersion
+    is_certain = found.gain_over(first) > first.required_of_switch + may_gain
+    return first if first.fit.converged or is_certain else first.refit(first.structure, beginning_only=True)
 
 
 def _is_possible(search: ModelSearch) -> bool:
