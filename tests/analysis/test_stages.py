@@ -10,6 +10,7 @@ import pytest
 import sprung
 import sprung.analysis.terms
 from sprung.analysis import STAGES, Analysis, AnalysisOptions, analyse, identify_campaign, result_of
+from sprung.analysis.faults import isolate_evident_faults
 from sprung.campaign import DEFAULT_HEIGHT, Drop
 from sprung.progress import silent
 from sprung.selection import ModelSearch, ModelStructure
@@ -100,6 +101,26 @@ def test_requested_terms_are_fitted_and_no_others_tried(campaign: sprung.Campaig
     run = analyse(campaign, AnalysisOptions(tracks="shared", terms=("anti-roll",), fall=False))
     assert run.model.structure.terms == ("anti-roll",)
     assert not [step for step in run.trace if step.stage.startswith("select") and "scored" in step.what]
+
+
+def test_faults_are_looked_for_once_in_a_misfit_of_which_none_explains_any() -> None:
+    """Friction is no fault: while most of what it does is left, no other fit of springs and dampers shows one either."""
+    rubbing = TABLE_1_CAR.with_values(F_f=90.0, F_r=70.0, s_f=2.5e5, s_r=2.5e5)
+    drops = [{"wheels": list(wheels)} for wheels in KINDS]
+    known = {"total_mass": TABLE_1_CAR.total_mass}
+    campaign = sprung.simulate(rubbing, drops=drops, rate=200.0, noise=0.02, seed=1, duration=1.2, known=known)
+    names = [stage.__name__ for stage in STAGES]
+    first = Analysis.start(campaign, AnalysisOptions(), STAGES[: names.index("isolate_evident_faults") + 1]).run()
+    assert first.isolated == (first.fit, ())
+
+    moved = replace(first, search=replace(first.model, fit=replace(first.fit, steps=first.fit.steps + 1)))
+    again = isolate_evident_faults(moved, silent)
+    assert again.fits == moved.fits
+    assert again.trace[-1].what == "faults are not looked for again"
+
+    explained = moved.model.refit(moved.model.with_terms(["friction"]))
+    other = isolate_evident_faults(replace(moved, search=explained), silent)
+    assert other.trace[-1].what != "faults are not looked for again"
 
 
 @pytest.mark.slow
