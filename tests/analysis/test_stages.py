@@ -48,6 +48,16 @@ def scaled(campaign: sprung.Campaign, channel: int, factor: float) -> sprung.Cam
     )
 
 
+def with_friction(last: str) -> Analysis:
+    """Analyse a short campaign of a car with dry friction up to a stage."""
+    rubbing = TABLE_1_CAR.with_values(F_f=90.0, F_r=70.0, s_f=2.5e5, s_r=2.5e5)
+    drops = [{"wheels": list(wheels)} for wheels in KINDS]
+    known = {"total_mass": TABLE_1_CAR.total_mass}
+    campaign = sprung.simulate(rubbing, drops=drops, rate=200.0, noise=0.02, seed=1, duration=1.2, known=known)
+    names = [stage.__name__ for stage in STAGES]
+    return Analysis.start(campaign, AnalysisOptions(), STAGES[: names.index(last) + 1]).run()
+
+
 def test_a_sound_campaign_goes_through_every_stage_once(sound: Analysis) -> None:
     stages = [step.stage for step in sound.trace]
     assert stages[0] == "preprocess"
@@ -105,12 +115,7 @@ def test_requested_terms_are_fitted_and_no_others_tried(campaign: sprung.Campaig
 
 def test_faults_are_looked_for_once_in_a_misfit_of_which_none_explains_any() -> None:
     """Friction is no fault: while most of what it does is left, no other fit of springs and dampers shows one either."""
-    rubbing = TABLE_1_CAR.with_values(F_f=90.0, F_r=70.0, s_f=2.5e5, s_r=2.5e5)
-    drops = [{"wheels": list(wheels)} for wheels in KINDS]
-    known = {"total_mass": TABLE_1_CAR.total_mass}
-    campaign = sprung.simulate(rubbing, drops=drops, rate=200.0, noise=0.02, seed=1, duration=1.2, known=known)
-    names = [stage.__name__ for stage in STAGES]
-    first = Analysis.start(campaign, AnalysisOptions(), STAGES[: names.index("isolate_evident_faults") + 1]).run()
+    first = with_friction("isolate_evident_faults")
     assert first.isolated == (first.fit, ())
 
     moved = replace(first, search=replace(first.model, fit=replace(first.fit, steps=first.fit.steps + 1)))
@@ -126,12 +131,7 @@ def test_faults_are_looked_for_once_in_a_misfit_of_which_none_explains_any() -> 
 @pytest.mark.slow
 def test_a_nonlinear_term_that_is_nothing_at_the_optimum_is_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
     """The search ends a standard error away from the optimum, and does not know where the wheels last touched."""
-    rubbing = TABLE_1_CAR.with_values(F_f=90.0, F_r=70.0, s_f=2.5e5, s_r=2.5e5)
-    drops = [{"wheels": list(wheels)} for wheels in KINDS]
-    known = {"total_mass": TABLE_1_CAR.total_mass}
-    campaign = sprung.simulate(rubbing, drops=drops, rate=200.0, noise=0.02, seed=1, duration=1.2, known=known)
-    names = [stage.__name__ for stage in STAGES]
-    run = Analysis.start(campaign, AnalysisOptions(), STAGES[: names.index("fit_baseline") + 1]).run()
+    run = with_friction("fit_baseline")
 
     def with_too_much(search: ModelSearch, _: ModelStructure) -> ModelSearch:
         return search.refit(search.with_terms(["friction", "tyre-curve"]))

@@ -63,10 +63,11 @@ def select_low_pass(search: ModelSearch) -> ModelSearch:
     search.progress(Step("looking for a low-pass of the loggers"))
     # Motions before a low-pass are stepped more finely: one at infinity does nothing else.
     without = _refit_behind(search, LowPass(np.inf, _ORDER), _FIRST, beginning_only=True)
-    mild = _begin_behind(search, min(_MILD, 0.8 * _highest(search)))
+    mildest = 0.8 * _highest(search)
+    mild = _begin_behind(search, min(_MILD, mildest))
     if not mild.gain_over(without) > 0:
         return search
-    usual = _begin_behind(search, min(_USUAL, 0.8 * _highest(search)))
+    usual = _begin_behind(search, _USUAL) if mildest > _USUAL else mild
     found = usual if usual.gain_over(without) > 0 else mild
     found = found.refit(found.structure, _ITERATIONS, beginning_only=True)
     if not _is_possible(found) or not _gains_enough(found, without):

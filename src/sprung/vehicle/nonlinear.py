@@ -63,6 +63,12 @@ class Dependences(NamedTuple):
         found: Index = np.searchsorted(self.which * size + self.parameters, which * size + parameters)
         return found
 
+    def add(self, total: Array, which: Index, parameters: Index, slopes: Array) -> None:
+        """Add slopes (parameter, ..., element) of a law to those of all pairs, shape (dependence, ...)."""
+        entries = self.find(which, parameters)
+        for parameter, element in np.ndindex(*entries.shape):
+            total[entries[parameter, element]] += slopes[parameter][..., element]
+
 
 class NonlinearForces(NamedTuple):
     """Nonlinear elements over one list of parameters, whose values are SI, shape (parameter,).
@@ -181,12 +187,9 @@ class NonlinearForces(NamedTuple):
         memory = np.zeros((len(of_memories.which), *given.travel.shape[:-1]))
         for law, at, own, positions in self.laws:
             of_force, of_memory = law.differentiate(values[positions], _part(given, law, at, own))
-            entries = of_forces.find(np.arange(self.number)[at], positions)
-            for which, column in np.ndindex(*positions.shape):
-                force[entries[which, column]] += of_force[which][..., column]
-            entries = of_memories.find(np.arange(self.memories)[own], positions) if law.has_memory else entries[:0]
-            for which, column in np.ndindex(*entries.shape):
-                memory[entries[which, column]] += of_memory[which][..., column]
+            of_forces.add(force, np.arange(self.number)[at], positions, of_force)
+            if law.has_memory:
+                of_memories.add(memory, np.arange(self.memories)[own], positions, of_memory)
         return force, memory
 
 
