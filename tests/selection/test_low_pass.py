@@ -15,6 +15,7 @@ from sprung.estimation import LowPass, fit_linear
 from sprung.preprocess import prepare
 from sprung.selection import ModelSearch, choose_structure, confirm_low_pass, corner_of, select_low_pass
 from sprung.selection.low_pass import states_behind
+from sprung.selection.stepwise import try_likeliest
 from sprung.vehicle import TABLE_1_CAR, Vehicle
 
 RATE, FINER, NOISE = 500.0, 8, 0.01
@@ -30,8 +31,8 @@ def fine() -> Campaign:
     return sprung.simulate(CAR, drops=drops, seed=2, known={"m_s": TRUTH["m_s"]}, rate=FINER * RATE, noise=0.0)
 
 
-def fitted(low_pass: LowPass | None) -> ModelSearch:
-    """Fit the true terms to the recordings, sampled behind a low-pass with the noise of the converter."""
+def fitted(low_pass: LowPass | None, terms: tuple[str, ...] = ("friction", "rebound")) -> ModelSearch:
+    """Fit some of the true terms to the recordings, sampled behind a low-pass with the noise of the converter."""
     random, recordings = np.random.default_rng(3), []
     for one in fine().recordings:
         values = one.values
@@ -45,8 +46,7 @@ def fitted(low_pass: LowPass | None) -> ModelSearch:
     decays, plain = prepare(campaign).decays, choose_structure(campaign, "shared", ())
     start = {name: TRUTH[name] for name in plain.names}
     linear = fit_linear(decays, plain.linear_models, plain.sensors, plain.known, start=start, most=0)
-    terms = choose_structure(campaign, "shared", ("friction", "rebound"))
-    return ModelSearch(plain, linear, decays).refit(terms, enough=0.1)
+    return ModelSearch(plain, linear, decays).refit(choose_structure(campaign, "shared", terms), enough=0.1)
 
 
 def errors(search: ModelSearch) -> dict[str, float]:
@@ -79,6 +79,19 @@ def test_without_one_there_is_none() -> None:
     confirmed = confirm_low_pass(completed)
     assert confirmed.structure.low_pass is None
     assert confirmed.gain_over(completed) > 100
+
+
+@pytest.mark.slow
+def test_a_rival_of_a_low_pass_is_fitted_if_its_first_steps_gain_enough() -> None:
+    """The first steps with the friction that is missing reach a tenth of what it gains, and not ten times as much."""
+    search = fitted(None, ("rebound",))
+    whole = 2 * (search.refit(search.with_terms(("friction",))).fit.loglikelihood - search.fit.loglikelihood)
+    accepted = try_likeliest(search, ("friction",), 0.1 * whole)
+    assert accepted.structure.terms == ("friction", "rebound")
+    refused = try_likeliest(search, ("friction",), 10 * whole)
+    assert refused.structure is search.structure
+    assert refused.fit is search.fit
+    assert refused.steps[-1].against == "a low-pass of the loggers explains more"
 
 
 @pytest.mark.slow

@@ -23,8 +23,8 @@ Real = NDArray[np.float64]
 _ROUNDS = 3
 """How many times a fit goes on, at the most: some drops are set free once others are."""
 
-_STEPS = 8
-"""Steps of initial states after which a drop that is likelier with others shows it."""
+_HEATS = (2, 2), (6, 1)
+"""Steps of initial states that all starts of a drop take, and how many of them go on; then of those until the best shows."""
 
 _WORSE, _MOST_STUCK = 1.3, 1 / 3
 """Squares that a drop leaves, over those of the median one, from which it is stuck; and the part of all drops that may be so:
@@ -88,16 +88,17 @@ def _likelier_states(objective: TimeSteppingObjective, found: Maximum[Iterate], 
     starts += [(drop, start) for drop in stuck for start in _scattered(objective, at.states, drop)]
     if not starts:
         return None
-    drops, states = zip(*starts, strict=True)
-    concerned = objective.with_decays([objective.decays[drop] for drop in drops]).with_states(np.array(states))
-    anew = concerned.at(at.values, at.weights).with_optimal_states(_STEPS)
-    before = {drop: _cost(at.of_drop(drop)) for drop in dict.fromkeys(drops)}
-    gains = np.array([before[drop] - _cost(anew.of_drop(own)) for own, drop in enumerate(drops)])
+    for steps, best in _HEATS:
+        drops, states = zip(*starts, strict=True)
+        concerned = objective.with_decays([objective.decays[drop] for drop in drops]).with_states(np.array(states))
+        anew = concerned.at(at.values, at.weights).with_optimal_states(steps)
+        costs = [_cost(anew.of_drop(own)) for own in range(len(drops))]
+        ranked = {drop: sorted((cost, own) for own, cost in enumerate(costs) if drops[own] == drop) for drop in drops}
+        starts = [(drop, anew.states[own]) for drop, own_costs in ranked.items() for _, own in own_costs[:best]]
     whole = at.states.copy()
-    for drop in before:
-        own = max((i for i, other in enumerate(drops) if other == drop), key=lambda i: float(gains[i]))
-        if gains[own] > least:
-            whole[drop] = anew.states[own]
+    for drop, state in starts:
+        if _cost(at.of_drop(drop)) - ranked[drop][0][0] > least:
+            whole[drop] = state
     return whole if (whole != at.states).any() else None
 
 

@@ -50,6 +50,9 @@ _CONTINUED = 3
 _FURTHER_ROUNDS, _TRIED_BESIDE = 8, 2
 """How many times terms are looked for beside nonlinear ones, and how many are fitted each time until one is accepted."""
 
+_RIVALLING = 0.5
+"""Part of what a low-pass gains that a term has to gain by its first steps to be fitted in its place."""
+
 
 def select_linear_terms(
     search: ModelSearch, among: Sequence[str] = _LINEAR, refused: Collection[str] = ()
@@ -212,9 +215,9 @@ def _untried(search: ModelSearch, tried: Collection[str]) -> list[str]:
     return [term for term in search.open_terms(tuple(TERMS)) if term not in tried]
 
 
-def _accept_rival(search: ModelSearch, terms: Sequence[str]) -> ModelSearch:
-    """Fit terms that no score tells from each other, and accept the likeliest if it is needed."""
-    found = try_likeliest(search, terms) if terms else search
+def _accept_rival(search: ModelSearch, terms: Sequence[str], least: float = 0.0) -> ModelSearch:
+    """Fit terms that no score tells from each other, and accept the likeliest if it is needed and may gain so much."""
+    found = try_likeliest(search, terms, least) if terms else search
     return found if found.structure is search.structure else confirm_low_pass(found)
 
 
@@ -237,7 +240,8 @@ def _accept_low_pass(search: ModelSearch, *rivals: Sequence[str]) -> ModelSearch
     found = select_low_pass(search)
     if found.structure is search.structure:
         return search
-    others = (_accept_rival(search, terms) for terms in rivals)
+    least = _RIVALLING * found.gain_over(search) * found.overdispersion
+    others = (_accept_rival(search, terms, least) for terms in rivals)
     return max((found, *others), key=lambda other: other.gain_over(found))
 
 
@@ -364,7 +368,7 @@ def accept_likeliest(
     return search, False
 
 
-def try_likeliest(search: ModelSearch, terms: Sequence[str]) -> ModelSearch:
+def try_likeliest(search: ModelSearch, terms: Sequence[str], least: float = 0.0) -> ModelSearch:
     """Try the one of several terms that explains the beginnings of the decays best after some steps.
 
     Scores tell terms apart that act at different places, not laws of the same part.
@@ -372,9 +376,12 @@ def try_likeliest(search: ModelSearch, terms: Sequence[str]) -> ModelSearch:
     Parameters
     ----------
     search
-        The present model.
+        The present model, a nonlinear one where anything is asked of the first steps.
     terms
         Nonlinear ones.
+    least
+        Gain in twice the log-likelihood that the first steps have to reach, where a low-pass of the loggers explains the
+        records as well.
 
     Returns
     -------
@@ -382,6 +389,12 @@ def try_likeliest(search: ModelSearch, terms: Sequence[str]) -> ModelSearch:
     """
     first = {term: begin_nonlinear_fit(search, search.with_terms([term])) for term in terms}
     likeliest = max(terms, key=lambda term: first[term].loglikelihood)
+    if least > 0 and first[likeliest].converged:
+        # The first steps are coarse in time, which a model without the term has to be as well.
+        present = begin_nonlinear_fit(search, search.structure)
+        gain = 2 * (first[likeliest].loglikelihood - present.loglikelihood)
+        if gain < least:
+            return search.recorded(dict.fromkeys(terms, 0.0), True, False, "a low-pass of the loggers explains more")
     against = f"{likeliest} explains the beginnings of the decays better"
     others = dict.fromkeys((term for term in terms if term != likeliest), 0.0)
     return try_term(search.recorded(others, True, False, against), likeliest, first=first[likeliest])
