@@ -5,7 +5,12 @@ from sprung.preprocess.decay import FlightLikelihood, FreeDecay, quantisation_va
 from sprung.preprocess.dropped_wheels import Dropped, merge_dropped_wheels
 from sprung.preprocess.events import DropObservation, Events, MarkedSamples
 from sprung.preprocess.fall import BLOW, IMPACT, WHEEL_SPEED, detect_dropped_channels, measure_fall
-from sprung.preprocess.first_motion import begins_upward, is_first_motion_consistent, redetect_dropped_wheels
+from sprung.preprocess.first_motion import (
+    begins_upward,
+    count_disagreeing_drops,
+    is_first_motion_consistent,
+    redetect_dropped_wheels,
+)
 from sprung.preprocess.flight import find_flights
 from sprung.preprocess.high_pass import differentiate_by_cutoff, is_ac_coupled
 from sprung.preprocess.landing import find_steepest_rise
@@ -30,6 +35,7 @@ __all__ = [
     "SensorNoise",
     "align_loggers",
     "begins_upward",
+    "count_disagreeing_drops",
     "detect_dropped_channels",
     "detect_release",
     "differentiate_by_cutoff",

@@ -44,27 +44,47 @@ def detect_dropped_wheels(recording: Recording, release: Release | None, sensors
     and one that stood was not.
     """
     of_wheels = np.array([sensor.wheel is not None or sensor.on is None for sensor in sensors]) & recording.usable
-    wheels = of_wheels & np.array([sensor.reads_gravity for sensor in sensors])
     if release is None or not of_wheels.any():
         return {}
-    if not wheels.any():
+    if not (of_wheels & np.array([sensor.reads_gravity for sensor in sensors])).any():
         return _lowered_wheels(recording, release, sensors)
+    shown = _falls_by_wheel(recording, release, sensors)
+    return {wheel: shown[wheel] == {True} for wheel in STATIONS if shown.get(wheel) in ({True}, {False})}
+
+
+def find_disagreeing_wheels(recording: Recording, release: Release | None, sensors: Sequence[Sensor]) -> set[Wheel]:
+    """Return the wheels of which one sensor shows that they fell and another one that they stood.
+
+    Parameters
+    ----------
+    recording, release, sensors
+        As for `detect_dropped_wheels`.
+
+    Returns
+    -------
+    set
+        Wheel stations.
+    """
+    shown = {} if release is None else _falls_by_wheel(recording, release, sensors)
+    return {wheel for wheel, falls in shown.items() if {True, False} <= falls}
+
+
+def _falls_by_wheel(recording: Recording, release: Release, sensors: Sequence[Sensor]) -> dict[Wheel, set[bool | None]]:
+    """Return what the accelerometers of each wheel show: a fall, none, or None where one is not clear."""
+    wheels = recording.usable & np.array(
+        [(one.wheel is not None or one.on is None) and one.reads_gravity for one in sensors]
+    )
     level, first = release.level, release.sample
     moved = recording.values[:, first : first + int(IMPACT * recording.rate)] - level[:, None]
     onset, depth, speed, *_ = measure_fall(moved, recording.rate, 0, level)
     channels = detect_dropped_channels(level, onset, depth, speed, wheels)
-    if not channels:
-        return {}
-    dropped: dict[Wheel, bool] = {}
-    unclear: set[Wheel] = set()
-    for channel in np.flatnonzero(wheels).tolist():
-        station = sensors[channel].wheel
-        if station is None:  # a wheel, but not known which
-            continue
-        falls = channel in channels
-        if falls != (depth[channel] > STANDARD_GRAVITY) or dropped.setdefault(station, falls) != falls:
-            unclear.add(station)
-    return {station: dropped[station] for station in STATIONS if station in dropped and station not in unclear}
+    shown: dict[Wheel, set[bool | None]] = {}
+    for channel in np.flatnonzero(wheels).tolist() if channels else ():
+        station, falls = sensors[channel].wheel, channel in channels
+        if station is not None:  # a wheel, but not known which
+            is_clear = falls == bool(depth[channel] > STANDARD_GRAVITY)
+            shown.setdefault(station, set()).add(falls if is_clear else None)
+    return shown
 
 
 def _lowered_wheels(recording: Recording, release: Release, sensors: Sequence[Sensor]) -> dict[Wheel, bool]:

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.campaign import Campaign
-from sprung.preprocess.dropped_wheels import Dropped, detect_dropped_wheels
+from sprung.preprocess.dropped_wheels import Dropped, detect_dropped_wheels, find_disagreeing_wheels
 from sprung.preprocess.prepare import Prepared
 from sprung.vehicle import STATIONS, Wheel
 
@@ -57,6 +57,27 @@ def redetect_dropped_wheels(campaign: Campaign, prepared: Prepared) -> tuple[Dro
     return tuple(
         detect_dropped_wheels(seen.recording, None if seen.release is None else seen.rest, campaign.sensors)
         for seen in prepared.observations
+    )
+
+
+def count_disagreeing_drops(campaign: Campaign, prepared: Prepared) -> int:
+    """Return the number of drops in which sensors that are stated on the same wheel do not agree whether it fell.
+
+    Parameters
+    ----------
+    campaign
+        States the places.
+    prepared
+        Its recordings.
+
+    Returns
+    -------
+    int
+    """
+    return sum(
+        bool(find_disagreeing_wheels(seen.recording, seen.rest, campaign.sensors))
+        for seen in prepared.observations
+        if seen.release is not None and not seen.drop.is_driven
     )
 
 

@@ -13,6 +13,7 @@ from sprung.faults.statements.cause import CommonCause
 from sprung.faults.statements.exchanged_axes import exchanged_axes
 from sprung.faults.statements.exchanged_sides import exchanged_sides
 from sprung.faults.statements.mirrored_positions import mirrored_positions
+from sprung.faults.statements.misplaced_channels import exchanged_channels, wrong_wheels
 from sprung.faults.statements.other_origin import other_origin
 from sprung.faults.statements.undeclared_load import undeclared_loads
 from sprung.faults.statements.upside_down import upside_down
@@ -20,6 +21,7 @@ from sprung.preprocess import (
     Dropped,
     Prepared,
     begins_upward,
+    count_disagreeing_drops,
     is_first_motion_consistent,
     merge_dropped_wheels,
     prepare,
@@ -28,11 +30,22 @@ from sprung.preprocess import (
 from sprung.progress import Progress, silent
 from sprung.selection import ModelStructure
 
-_HYPOTHESES = (mirrored_positions, upside_down, other_origin, exchanged_axes, exchanged_sides)
+_HYPOTHESES = (
+    mirrored_positions,
+    upside_down,
+    other_origin,
+    exchanged_axes,
+    exchanged_sides,
+    exchanged_channels,
+    wrong_wheels,
+)
 """In the order in which they are believed where the recordings cannot tell them apart."""
 
 _FEWEST = 3
 """Sensors on the body that show how it turns."""
+
+_SEVERAL = 2
+"""Drops from which it is no chance that sensors of a wheel contradict each other, or show nothing clear."""
 
 
 def examine(campaign: Campaign, progress: Progress = silent) -> tuple[Campaign, Prepared, dict[str, Fault]]:
@@ -86,21 +99,41 @@ def with_common_cause_corrected(campaign: Campaign, prepared: Prepared) -> Campa
     InputError
         If several mistakes explain it that lead to different vehicles, and the recordings cannot tell which it is.
     """
-    wheelbase = _wheelbase(campaign)
-    if wheelbase is None or _consistent(campaign, prepared, _dropped(prepared), wheelbase) is not False:
+    wheelbase, stated = _wheelbase(campaign), _dropped(prepared)
+    if wheelbase is None:
         return campaign
-    if _one_drop_explains(campaign, prepared, wheelbase):
+    is_contradicted = _consistent(campaign, prepared, stated, wheelbase) is False
+    if not is_contradicted and not _is_any_wheel_unclear(campaign, stated):
         return campaign
-    explaining = []
+    if is_contradicted and _one_drop_explains(campaign, prepared, wheelbase):
+        return campaign
+    found: dict[int, list[CommonCause]] = {}
     for hypotheses in _HYPOTHESES:
         for fault, changed in hypotheses(campaign, wheelbase):
             again = prepared if changed.recordings == campaign.recordings else prepare(changed)
-            if _consistent(changed, again, redetect_dropped_wheels(changed, again), wheelbase):
-                explaining.append((fault, changed))
-    if not explaining:
+            dropped = redetect_dropped_wheels(changed, again)
+            if _consistent(changed, again, dropped, wheelbase):
+                found.setdefault(_confirmed(changed, dropped), []).append((fault, changed))
+    # What shows nothing clear contradicts nothing, either: the more wheels are confirmed the better.
+    most = max(found, default=0)
+    if not found or (not is_contradicted and most <= _confirmed(campaign, stated)):
         return campaign
-    fault, changed = explaining[0] if len(explaining) == 1 else _most_likely(campaign, explaining)
+    fault, changed = found[most][0] if len(found[most]) == 1 else _most_likely(campaign, found[most])
     return replace(changed, faults=(*changed.faults, fault))
+
+
+def _confirmed(campaign: Campaign, dropped: Sequence[Dropped]) -> int:
+    """Return how often a wheel clearly fell or stood as the campaign states."""
+    pairs = zip(campaign.drops, dropped, strict=True)
+    return sum(falls == (wheel in drop.wheels) for drop, shown in pairs for wheel, falls in shown.items())
+
+
+def _is_any_wheel_unclear(campaign: Campaign, dropped: Sequence[Dropped]) -> bool:
+    """Whether the sensor of a wheel does not show clearly whether it falls in several drops in which it should."""
+    wheels = {sensor.wheel for sensor in campaign.sensors if sensor.wheel is not None and sensor.reads_gravity}
+    pairs = [(set(drop.wheels), shown) for drop, shown in zip(campaign.drops, dropped, strict=True) if shown]
+    unclear = [sum(wheel in stated and wheel not in shown for stated, shown in pairs) for wheel in wheels]
+    return max(unclear, default=0) >= _SEVERAL
 
 
 def _wheelbase(campaign: Campaign) -> float | None:
@@ -119,7 +152,7 @@ def _dropped(prepared: Prepared) -> list[Dropped]:
 
 def _consistent(campaign: Campaign, prepared: Prepared, dropped: Sequence[Dropped], wheelbase: float) -> bool | None:
     """Whether body, wheels and drops agree on the dropped wheels; None if they are not significant."""
-    if begins_upward(campaign, prepared):
+    if begins_upward(campaign, prepared) or count_disagreeing_drops(campaign, prepared) >= _SEVERAL:
         return False
     seen = [merge_dropped_wheels(*pair) for pair in zip(campaign.drops, dropped, strict=True)]
     if any(set(drop.wheels) != set(wheels) for drop, wheels in zip(campaign.drops, seen, strict=True)):
