@@ -7,10 +7,10 @@ from dataclasses import replace
 
 from sprung.analysis.analysis import MOST_RESTARTS, Analysis
 from sprung.analysis.baseline import converged
+from sprung.analysis.correcting import restart_corrected
 from sprung.analysis.first_term import explaining_term
 from sprung.analysis.settling import settle_corrections
 from sprung.analysis.terms import select_finite_rotation
-from sprung.campaign import Campaign
 from sprung.errors import Fault
 from sprung.estimation import NEAR, FitResult
 from sprung.faults import (
@@ -68,7 +68,7 @@ def isolate_evident_faults(run: Analysis, progress: Progress) -> Analysis:
         run = _with_isolated(turned, _consistency(turned), progress)
     if not _is_evident(run.found):
         return run
-    return _corrected(run, run.found, "isolate_evident_faults")
+    return restart_corrected(run, run.found, "isolate_evident_faults")
 
 
 def isolate_faults(run: Analysis, progress: Progress) -> Analysis:
@@ -82,7 +82,7 @@ def isolate_faults(run: Analysis, progress: Progress) -> Analysis:
     for fault in named:
         run = run.noted("isolate_faults", f"suspected {fault.code} of {fault.where}", fault.what)
     corrected = [one for one in found if one.remedy != "named"]
-    return _corrected(run, corrected, "isolate_faults") if corrected else run
+    return restart_corrected(run, corrected, "isolate_faults") if corrected else run
 
 
 def _suspected_sensor(search: ModelSearch) -> tuple[Fault, ...]:
@@ -188,14 +188,3 @@ def _fit_of(structure: ModelStructure, decays: Sequence[FreeDecay], before: FitR
     if structure.needs_start:
         return CandidateFit.of(structure, decays, fit_structure(structure, decays, before, NEAR, silent))
     return CandidateFit.of(structure, decays)
-
-
-def _corrected(run: Analysis, hypotheses: Sequence[Hypothesis], stage: str) -> Analysis:
-    """Restart with what is wrong corrected or left out, and named."""
-    campaign: Campaign = run.campaign
-    for hypothesis in hypotheses:
-        if hypothesis.recording is None:  # a drop that is left out stays in the campaign, with its reason
-            campaign = hypothesis.correction.of_campaign(campaign)
-            campaign = replace(campaign, faults=(*campaign.faults, hypothesis.fault))
-    why = "; ".join(f"{one.fault.where}: {one.fault.what}" for one in hypotheses)
-    return run.restart(campaign, hypotheses, stage, why)

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from sprung.analysis.analysis import Analysis
+from sprung.analysis.analysis import MOST_RESTARTS, Analysis
 from sprung.analysis.baseline import described, structures
+from sprung.analysis.correcting import restart_corrected
 from sprung.analysis.first_term import explaining_term
 from sprung.analysis.on_pads import NOT_STEPPED, has_pads
-from sprung.faults import consistency_of
+from sprung.faults import CandidateFit, consistency_of, correct_sensor_error
 from sprung.progress import Progress
 from sprung.selection import (
     TERMS,
@@ -88,10 +89,16 @@ def select_nonlinear_terms(run: Analysis, progress: Progress) -> Analysis:
         plain = replace(
             plain, carried_at=found.carried_at, assumed_heights=found.assumed_heights, sinking=found.sinking
         )
+        before = replace(before, seeks_sensor_errors=len(run.corrected) < MOST_RESTARTS)
         early = begin_no_later(before, run.prepared.decays)
         search = select_nonlinear(early, plain)
-        if early is not before and (search.has_model_error or search.structure.names == found.names):
+        is_wanting = search.has_model_error or search.structure.names == found.names
+        if early is not before and is_wanting and search.sensor_error is None:
             search = select_nonlinear(replace(before, steps=search.steps), plain)
+        if search.sensor_error is not None:
+            run = _noted_steps(run, run.model, search, "select_nonlinear_terms")
+            wrong = correct_sensor_error(CandidateFit.of(found, run.decays, run.fit), search.sensor_error)
+            return restart_corrected(run, [wrong], "select_nonlinear_terms")
     if search.structure.names != before.structure.names:
         # The search compares fits to beginnings, or to a standard error: at the optimum a term may turn out to be nothing.
         last = from_contact(search)
@@ -111,12 +118,18 @@ def has_flexible_body(run: Analysis) -> bool:
 
 
 def _with_search(run: Analysis, before: ModelSearch, search: ModelSearch, stage: str) -> Analysis:
+    noted = replace(_noted_steps(run, before, search, stage), search=search)
+    return noted.noted(stage, described(search), f"{noted.fits - run.fits} fits")
+
+
+def _noted_steps(run: Analysis, before: ModelSearch, search: ModelSearch, stage: str) -> Analysis:
+    """Count the fits of a search, and note what it tried."""
     steps = search.steps[len(before.steps) :]
     fits = sum(step.fitted and not step.joint for step in steps) + (search.structure.names != before.structure.names)
-    run = replace(run, search=search, fits=run.fits + fits)
+    run = replace(run, fits=run.fits + fits)
     for step in steps:
         run = run.noted(stage, f"{step.extra}: {_outcome(step)}", step.text)
-    return run.noted(stage, described(search), f"{fits} fits")
+    return run
 
 
 def _outcome(step: SelectionStep) -> str:

@@ -13,6 +13,7 @@ from sprung.faults.drop import CONTRADICTING
 from sprung.faults.hypothesis import Hypothesis
 from sprung.faults.isolate import isolate, largest_gain_by_steps
 from sprung.faults.residual_table import is_explained, reference_noise, residual_table
+from sprung.faults.sensor_error import correct_sensor_error
 from sprung.faults.statements.search import examine
 
 __all__ = [
@@ -21,6 +22,7 @@ __all__ = [
     "Consistency",
     "Hypothesis",
     "consistency_of",
+    "correct_sensor_error",
     "decays_without_wheel_sensors",
     "detect_drift",
     "examine",

@@ -17,6 +17,7 @@ from sprung.selection.model_term import ModelTerm
 from sprung.selection.nonlinear import select_nonlinear_terms
 from sprung.selection.scoring import WORTH_A_FIT, score_terms
 from sprung.selection.search import ModelSearch, SelectionStep
+from sprung.selection.sensor_errors import SensorError
 from sprung.selection.starts import fit_structure
 from sprung.selection.stepwise import select_linear_terms, try_term
 from sprung.selection.structure import ModelStructure, choose_structure
@@ -42,6 +43,7 @@ __all__ = [
     "ModelStructure",
     "ModelTerm",
     "SelectionStep",
+    "SensorError",
     "TermDescription",
     "begin_no_later",
     "choose_structure",

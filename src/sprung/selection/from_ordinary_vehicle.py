@@ -22,6 +22,7 @@ from sprung.selection.ordinary_vehicle import (
     is_ordinary,
 )
 from sprung.selection.search import ModelSearch
+from sprung.selection.sensor_errors import with_sensor_error
 from sprung.selection.starts import start_variants
 from sprung.selection.stepwise import select_terms_beside
 from sprung.selection.structure import ModelStructure
@@ -144,6 +145,8 @@ def select_beside_usual_terms(search: ModelSearch, rich: ModelStructure) -> Mode
         Model and fit as given where that vehicle explains no more.
     """
     found = fit_usual_terms(search, rich)
+    if found is not None and (found := with_sensor_error(found)).sensor_error is not None:
+        return found
     if found is None or search.leaves_misfit(found.fit, MISFIT_LEFT):
         against = "together they do not explain what the model so far leaves"
         terms = [term for term in rich.terms if TERMS[term].usual is not None]

@@ -16,6 +16,7 @@ from sprung.preprocess import FreeDecay
 from sprung.progress import Progress, silent
 from sprung.selection.error_budget import LEAST_SHARE, MODEL_ERROR, OVERDISPERSED, UNEXPLAINED, required_gain
 from sprung.selection.linear_terms import SEPARATE_TRACKS
+from sprung.selection.sensor_errors import SensorError
 from sprung.selection.starts import fit_structure, states_by_coordinates
 from sprung.selection.structure import ModelStructure
 from sprung.selection.terms import TERMS
@@ -79,6 +80,10 @@ class ModelSearch:
         What was tried.
     progress
         Called with each step that begins.
+    seeks_sensor_errors
+        Whether errors of sensors are looked for beside nonlinear terms.
+    sensor_error
+        What is wrong with one of the sensors; then nothing more is looked for until it is corrected.
     """
 
     structure: ModelStructure
@@ -86,6 +91,8 @@ class ModelSearch:
     decays: Sequence[FreeDecay]
     steps: tuple[SelectionStep, ...] = ()
     progress: Progress = silent
+    seeks_sensor_errors: bool = False
+    sensor_error: SensorError | None = None
 
     @cached_property
     def samples(self) -> float:
@@ -102,7 +109,7 @@ class ModelSearch:
 
     def required(self, term: str) -> float:
         """Gain in twice the log-likelihood that is required of a term; where much is left to explain, a part of that."""
-        return max(self.significant(term), LEAST_SHARE * self._unexplained_gain)
+        return max(self.significant(term), LEAST_SHARE * self.unexplained_gain)
 
     @property
     def required_of_switch(self) -> float:
@@ -237,7 +244,7 @@ class ModelSearch:
         return bool(known.any()) and float(ratio.mean()) > 1 + MODEL_ERROR
 
     @cached_property
-    def _unexplained_gain(self) -> float:
+    def unexplained_gain(self) -> float:
         """Gain in twice the log-likelihood, over the overdispersion, if only the noise of the sensors were left."""
         if not self.has_model_error:
             return 0.0

@@ -19,6 +19,7 @@ from sprung.selection.low_pass import confirm_low_pass, select_low_pass
 from sprung.selection.ordinary_vehicle import fit_from_ordinary_vehicle
 from sprung.selection.scoring import WORTH_A_FIT, Scores, score_terms
 from sprung.selection.search import ModelSearch
+from sprung.selection.sensor_errors import with_sensor_error
 from sprung.selection.term_fits import (
     begin_nonlinear_fit,
     fit_linear_term,
@@ -109,7 +110,11 @@ def select_terms_beside(search: ModelSearch) -> ModelSearch:
     Returns
     -------
     ModelSearch
+        As given where one sensor is in error, with what is wrong with it.
     """
+    search = with_sensor_error(search)
+    if search.sensor_error is not None:
+        return search
     beginnings = [beginning_of(decay) for decay in search.decays]
     early = from_contact(replace(search, decays=beginnings), on_the_way=True)
     return select_terms_in_whole(select_further_terms(early, whole=False), search.decays)
@@ -396,6 +401,10 @@ def try_likeliest(search: ModelSearch, terms: Sequence[str], least: float = 0.0)
         if gain < least:
             return search.recorded(dict.fromkeys(terms, 0.0), True, False, "a low-pass of the loggers explains more")
     against = f"{likeliest} explains the beginnings of the decays better"
+    if not search.structure.is_nonlinear:
+        tried = replace(search, structure=search.with_terms([likeliest]), fit=first[likeliest])
+        if (error := with_sensor_error(tried).sensor_error) is not None:
+            return replace(search, sensor_error=error)
     others = dict.fromkeys((term for term in terms if term != likeliest), 0.0)
     return try_term(search.recorded(others, True, False, against), likeliest, first=first[likeliest])
 

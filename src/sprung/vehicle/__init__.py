@@ -82,7 +82,7 @@ from sprung.vehicle.readout import Readout, sensor_rows
 from sprung.vehicle.response import Motion, affine_response, after_rest, free_decay
 from sprung.vehicle.segments import NearbyMotion, integrate_near, segments_of
 from sprung.vehicle.sensitivities import differentiate_motions
-from sprung.vehicle.sensor import PADS, Sensor, SensorPlace, uncertainties_of
+from sprung.vehicle.sensor import LARGEST_PLACE, PADS, Sensor, SensorPlace, uncertainties_of
 from sprung.vehicle.stepping import StepDrive, Stepper, Trajectory
 from sprung.vehicle.tyre_rates import differentiate_tyre_rates_at_rest, with_tyre_rates_at_rest
 from sprung.vehicle.vehicle import Vehicle
@@ -96,6 +96,7 @@ __all__ = [
     "EXTRAS",
     "FORCE_CURVES",
     "FULL",
+    "LARGEST_PLACE",
     "LAYOUTS",
     "LEVEL",
     "LINEAR_EXTRAS",

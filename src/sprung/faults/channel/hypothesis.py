@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.errors import Fault
-from sprung.faults.channel_prediction import ChannelPrediction
 from sprung.faults.correction import Correction
+from sprung.vehicle import Sensor
 
 Real = NDArray[np.float64]
 
@@ -93,9 +93,9 @@ def figures(number: float) -> str:
     return f"{float(f'{number:.2g}'):g}"
 
 
-def stated_place(prediction: ChannelPrediction) -> str:
-    """Return where the campaign file puts the sensor, in words."""
-    if prediction.sensor.position is None:
-        return prediction.sensor.on or "a wheel"
-    x, y, _ = prediction.sensor.position
+def stated_place(sensor: Sensor) -> str:
+    """Return where the campaign file puts a sensor, in words."""
+    if sensor.position is None:
+        return sensor.on or "a wheel"
+    x, y, _ = sensor.position
     return f"x = {x:.2f} m, y = {y:.2f} m"

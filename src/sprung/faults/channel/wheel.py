@@ -21,7 +21,7 @@ def wheel(prediction: ChannelPrediction) -> Iterator[ChannelHypothesis]:
             continue
         there = {"on": station, "position": None} if stated.relative_to is None else {"relative_to": station}
         sensor = replace(stated, **there)
-        what = f"the channel shows the motion of wheel {station}, not of {stated_place(prediction)}"
+        what = f"the channel shows the motion of wheel {station}, not of {stated_place(stated)}"
         do = "Correct on = ... in the campaign file, or move the sensor."
         fault = Fault("wrong-wheel", prediction.sensor.channel, what, do)
         residual = prediction.residual_of(prediction.row(sensor) @ prediction.motion)

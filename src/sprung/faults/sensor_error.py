@@ -1,0 +1,71 @@
+"""The correction of a sensor whose error was found beside nonlinear terms, as an unknown of their fit."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import replace
+from typing import Any
+
+from sprung.errors import Fault
+from sprung.faults.candidate_fit import CandidateFit
+from sprung.faults.channel.delay import delay_fault
+from sprung.faults.channel.gain import gain_fault
+from sprung.faults.channel.position import position_fault
+from sprung.faults.correction import Correction, advance_channel, describe_sensor, scale_channel
+from sprung.faults.hypothesis import Hypothesis
+from sprung.selection import SensorError
+from sprung.vehicle import Sensor
+
+_STATED = {"gain_std", "position_std", "delay_std"}
+"""What is stated of a sensor's uncertainty."""
+
+_LEFT = 0.05
+"""Part of a correction that may be left, as its standard uncertainty: it was estimated with a model that may lack something."""
+
+
+def correct_sensor_error(base: CandidateFit, error: SensorError) -> Hypothesis:
+    """Return the hypothesis that a sensor is in error as a fit beside nonlinear terms found it.
+
+    Parameters
+    ----------
+    base
+        The present fit of the campaign as it is.
+    error
+        What was found.
+
+    Returns
+    -------
+    Hypothesis
+        Its correction states of the sensor how uncertain that is: what is left of the error remains an unknown of each fit.
+    """
+    sensors = base.campaign.sensors
+    channel = [sensor.channel for sensor in sensors].index(error.channel)
+    std = max(max(uncertainty, _LEFT * abs(size)) for size, uncertainty in error.found.values())
+    rates = {recording.rate for recording in base.campaign.recordings}
+    fault, correction, changes = _corrected(sensors[channel], channel, error, rates)
+    uncertain = {
+        name: max(changes.get(name, 0.0), getattr(sensors[channel], name), std) for name in _STATED & {*changes}
+    }
+    stated = replace(sensors[channel], **{**changes, **uncertain})
+    correction = replace(correction, description=describe_sensor(channel, stated).description)
+    return Hypothesis(
+        fault, "corrected", correction, base.table, base, free=len(error.found), is_fitted=True, is_sufficient=True
+    )
+
+
+def _corrected(
+    sensor: Sensor, channel: int, error: SensorError, rates: Collection[float]
+) -> tuple[Fault, Correction, dict[str, Any]]:
+    """Return the fault, what it changes of the samples, and what is stated of the sensor then."""
+    sizes = {quantity: size for quantity, (size, _) in error.found.items()}
+    if "delay" in sizes:
+        # Whole samples: between them, a jump at the release would ring. What is left is an unknown.
+        sample = 1 / max(rates)
+        whole = advance_channel(channel, round(sizes["delay"] / sample) * sample)
+        return delay_fault(sensor.channel, sizes["delay"]), whole, {"delay_std": sample / 2}
+    if "gain" in sizes:
+        gain = 1.0 + sizes["gain"]
+        return gain_fault(sensor.channel, gain), scale_channel(channel, 1 / gain), {"gain_std": sensor.gain_std}
+    x, y, z = sensor.position or (0.0, 0.0, 0.0)
+    x, y = x + sizes.get("x", 0.0), y + sizes.get("y", 0.0)
+    return position_fault(sensor, x, y), Correction(), {"position": (x, y, z), "position_std": sensor.position_std}
