@@ -9,7 +9,7 @@ from sprung.analysis.baseline import described, structures
 from sprung.analysis.correcting import restart_corrected
 from sprung.analysis.first_term import explaining_term
 from sprung.analysis.on_pads import NOT_STEPPED, has_pads
-from sprung.faults import CandidateFit, consistency_of, correct_sensor_error
+from sprung.faults import CandidateFit, consistency_of, correct_beside_terms
 from sprung.progress import Progress
 from sprung.selection import (
     TERMS,
@@ -89,16 +89,16 @@ def select_nonlinear_terms(run: Analysis, progress: Progress) -> Analysis:
         plain = replace(
             plain, carried_at=found.carried_at, assumed_heights=found.assumed_heights, sinking=found.sinking
         )
-        before = replace(before, seeks_sensor_errors=len(run.corrected) < MOST_RESTARTS)
+        before = replace(before, seeks_faults=len(run.corrected) < MOST_RESTARTS)
         early = begin_no_later(before, run.prepared.decays)
         search = select_nonlinear(early, plain)
         is_wanting = search.has_model_error or search.structure.names == found.names
-        if early is not before and is_wanting and search.sensor_error is None:
+        if early is not before and is_wanting and search.fault is None:
             search = select_nonlinear(replace(before, steps=search.steps), plain)
-        if search.sensor_error is not None:
+        if search.fault is not None:
             run = _noted_steps(run, run.model, search, "select_nonlinear_terms")
-            wrong = correct_sensor_error(CandidateFit.of(found, run.decays, run.fit), search.sensor_error)
-            return restart_corrected(run, [wrong], "select_nonlinear_terms")
+            wrong = correct_beside_terms(CandidateFit.of(found, run.decays, run.fit), search.fault)
+            return restart_corrected(run, wrong, "select_nonlinear_terms")
     if search.structure.names != before.structure.names:
         # The search compares fits to beginnings, or to a standard error: at the optimum a term may turn out to be nothing.
         last = from_contact(search)

@@ -6,6 +6,7 @@ fitted, and none is accepted on suspicion: it has to explain the recordings, bey
 well.
 """
 
+from sprung.faults.beside_terms import correct_beside_terms
 from sprung.faults.candidate_fit import CandidateFit, decays_without_wheel_sensors
 from sprung.faults.consistency import Consistency, consistency_of, largest_expected_gain, score_faults_of
 from sprung.faults.drift import detect_drift
@@ -13,7 +14,6 @@ from sprung.faults.drop import CONTRADICTING
 from sprung.faults.hypothesis import Hypothesis
 from sprung.faults.isolate import isolate, largest_gain_by_steps
 from sprung.faults.residual_table import is_explained, reference_noise, residual_table
-from sprung.faults.sensor_error import correct_sensor_error
 from sprung.faults.statements.search import examine
 
 __all__ = [
@@ -22,7 +22,7 @@ __all__ = [
     "Consistency",
     "Hypothesis",
     "consistency_of",
-    "correct_sensor_error",
+    "correct_beside_terms",
     "decays_without_wheel_sensors",
     "detect_drift",
     "examine",

@@ -30,6 +30,7 @@ from sprung.selection.term_fits import (
     with_neutral_terms,
 )
 from sprung.selection.terms import TERMS
+from sprung.selection.unlike_drops import UnlikeDrops
 
 __all__ = [
     "ENGINE",
@@ -45,6 +46,7 @@ __all__ = [
     "SelectionStep",
     "SensorError",
     "TermDescription",
+    "UnlikeDrops",
     "begin_no_later",
     "choose_structure",
     "confirm_low_pass",

@@ -14,6 +14,7 @@ from sprung.progress import Step
 from sprung.selection.backward_elimination import leave_out_unneeded
 from sprung.selection.contact import from_contact
 from sprung.selection.error_budget import MISFIT_LEFT
+from sprung.selection.evident_faults import with_evident_fault
 from sprung.selection.linear_terms import FLEXIBLE_BODIES
 from sprung.selection.ordinary_vehicle import (
     ITERATIONS,
@@ -22,7 +23,6 @@ from sprung.selection.ordinary_vehicle import (
     is_ordinary,
 )
 from sprung.selection.search import ModelSearch
-from sprung.selection.sensor_errors import with_sensor_error
 from sprung.selection.starts import start_variants
 from sprung.selection.stepwise import select_terms_beside
 from sprung.selection.structure import ModelStructure
@@ -145,7 +145,7 @@ def select_beside_usual_terms(search: ModelSearch, rich: ModelStructure) -> Mode
         Model and fit as given where that vehicle explains no more.
     """
     found = fit_usual_terms(search, rich)
-    if found is not None and (found := with_sensor_error(found)).sensor_error is not None:
+    if found is not None and (found := with_evident_fault(found)).fault is not None:
         return found
     if found is None or search.leaves_misfit(found.fit, MISFIT_LEFT):
         against = "together they do not explain what the model so far leaves"

@@ -54,7 +54,7 @@ def select_nonlinear_terms(search: ModelSearch, plain: ModelStructure) -> ModelS
     Returns
     -------
     ModelSearch
-        On its way, where errors of sensors are looked for and one was found.
+        On its way, where faults are looked for and one was found.
     """
     terms = search.open_terms([term for term, row in TERMS.items() if not row.is_linear])
     if not terms or any(decay.clocks for decay in search.decays):
@@ -66,7 +66,7 @@ def select_nonlinear_terms(search: ModelSearch, plain: ModelStructure) -> ModelS
     for select in _searches(search, plain, terms, ranked[:_TRIED_FIRST]):
         found = select(replace(search, steps=steps))
         steps = found.steps
-        if found.sensor_error is not None:
+        if found.fault is not None:
             return found
         # On the way through nonlinear terms linear ones may show that explain everything without them.
         is_result = found.structure.is_nonlinear or not found.lacks_something
@@ -213,6 +213,6 @@ def _from_base(base: ModelSearch, terms: Sequence[str], so_far: ModelSearch) -> 
     """Add the likeliest of some nonlinear terms, and further ones beside it."""
     base = replace(base, steps=so_far.steps)
     found = try_likeliest(base, terms)
-    if found.sensor_error is not None or found.structure.names == base.structure.names:
+    if found.fault is not None or found.structure.names == base.structure.names:
         return found
     return select_terms_beside(found)

@@ -20,6 +20,7 @@ from sprung.selection.sensor_errors import SensorError
 from sprung.selection.starts import fit_structure, states_by_coordinates
 from sprung.selection.structure import ModelStructure
 from sprung.selection.terms import TERMS
+from sprung.selection.unlike_drops import UnlikeDrops
 from sprung.vehicle import PARAMETERS
 
 Real = NDArray[np.float64]
@@ -80,10 +81,10 @@ class ModelSearch:
         What was tried.
     progress
         Called with each step that begins.
-    seeks_sensor_errors
-        Whether errors of sensors are looked for beside nonlinear terms.
-    sensor_error
-        What is wrong with one of the sensors; then nothing more is looked for until it is corrected.
+    seeks_faults
+        Whether faults are looked for beside nonlinear terms.
+    fault
+        What is wrong with a sensor or with drops; then nothing more is looked for until it is corrected.
     """
 
     structure: ModelStructure
@@ -91,8 +92,8 @@ class ModelSearch:
     decays: Sequence[FreeDecay]
     steps: tuple[SelectionStep, ...] = ()
     progress: Progress = silent
-    seeks_sensor_errors: bool = False
-    sensor_error: SensorError | None = None
+    seeks_faults: bool = False
+    fault: SensorError | UnlikeDrops | None = None
 
     @cached_property
     def samples(self) -> float:
@@ -227,7 +228,7 @@ class ModelSearch:
         return self.fit.overdispersion
 
     @cached_property
-    def _sensor_noise(self) -> Real:
+    def sensor_noise(self) -> Real:
         """Variance of each channel by its noise at rest and its resolution, (m/s²)²; 0 where unknown; shape (channel,).
 
         A vehicle may still swing on its blocks: what neighbouring samples share at rest is left out.
@@ -239,8 +240,8 @@ class ModelSearch:
     @cached_property
     def has_model_error(self) -> bool:
         """Whether the model leaves much more than the noise of the sensors."""
-        known = self._sensor_noise > 0
-        ratio = self.fit.noise[known] ** 2 / self._sensor_noise[known]
+        known = self.sensor_noise > 0
+        ratio = self.fit.noise[known] ** 2 / self.sensor_noise[known]
         return bool(known.any()) and float(ratio.mean()) > 1 + MODEL_ERROR
 
     @cached_property
@@ -249,7 +250,7 @@ class ModelSearch:
         if not self.has_model_error:
             return 0.0
         variance, _, samples = self.fit.residual_moments
-        ratio = np.maximum(variance, self._sensor_noise) / np.where(self._sensor_noise > 0, self._sensor_noise, np.inf)
+        ratio = np.maximum(variance, self.sensor_noise) / np.where(self.sensor_noise > 0, self.sensor_noise, np.inf)
         return float(np.sum(samples * np.log(np.maximum(ratio, 1.0)))) / self.overdispersion
 
     @cached_property
@@ -373,22 +374,22 @@ class ModelSearch:
     def leaves_misfit(self, fit: FitResult, part: float) -> bool:
         """Whether another fit, of the decays or their beginnings, leaves more than a part of this one's model error there."""
         before, after = self._model_errors(fit)
-        much = before > self._sensor_noise
+        much = before > self.sensor_noise
         # Of a motion without bounds the part is no number.
-        weights = 1 / self._sensor_noise[much]
+        weights = 1 / self.sensor_noise[much]
         return bool(much.any()) and not float(after[much] @ weights) <= part * float(before[much] @ weights)
 
     def is_better_than(self, fit: FitResult) -> bool:
         """Whether another fit, of the decays or their beginnings, leaves more in some channel there, by more than the noise."""
         before, after = self._model_errors(fit)
-        return bool(np.any(~(after <= before + self._sensor_noise)[self._sensor_noise > 0]))
+        return bool(np.any(~(after <= before + self.sensor_noise)[self.sensor_noise > 0]))
 
     def _model_errors(self, fit: FitResult) -> tuple[Real, Real]:
         """Return the variances beyond noise that this fit and another one leave where both fitted, (m/s²)², (channel,) each."""
         lengths = [residual.shape[1] for residual in fit.residuals]
         own = [residual[:, :length] for residual, length in zip(self.fit.residuals, lengths, strict=True)]
         before, after = (
-            np.maximum(_mean_squares(np.concatenate(residuals, axis=1)) - self._sensor_noise, 0.0)
+            np.maximum(_mean_squares(np.concatenate(residuals, axis=1)) - self.sensor_noise, 0.0)
             for residuals in (own, fit.residuals)
         )
         return before, after

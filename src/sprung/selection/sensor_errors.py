@@ -39,6 +39,12 @@ _OUTSTANDING = 2.0
 _EXPLAINS = 0.1
 """Part of what noise alone would gain that the sensor gains at least, where the model explains the recordings but roughly."""
 
+_PULLED = 5.0
+"""Standard uncertainties by which an unknown of a sensor is far from what is stated."""
+
+_FAR = 200.0
+"""Score of a place from which nothing else that a model lacks explains it."""
+
 _TELLS_GAIN = 0.1
 """Part of gravity at rest from which a sensor that feels it has shown its gain before any fit."""
 
@@ -65,8 +71,25 @@ class SensorError(NamedTuple):
     gain: float
 
 
-def with_sensor_error(search: ModelSearch) -> ModelSearch:
-    """Return the search with the error of the one sensor that stands out, if that explains what a nonlinear model leaves.
+def is_sensor_pulled(search: ModelSearch) -> bool:
+    """Whether a fit takes an unknown of a sensor far from what is stated of it, so that nothing may be left to explain.
+
+    Parameters
+    ----------
+    search
+        A model and its fit.
+
+    Returns
+    -------
+    bool
+    """
+    found = search.fit.parameters
+    stated = {name: one for sensor in search.structure.sensors for name, one in sensor.uncertainties.items()}
+    return any(abs(found[name] - one.value) > _PULLED * one.std for name, one in stated.items() if name in found)
+
+
+def find_sensor_error(search: ModelSearch) -> SensorError | None:
+    """Find the one sensor that is in error by more than is stated of it, once a fit confirms it.
 
     Parameters
     ----------
@@ -75,17 +98,9 @@ def with_sensor_error(search: ModelSearch) -> ModelSearch:
 
     Returns
     -------
-    ModelSearch
-        As given where errors of sensors are not looked for, where the model lacks nothing, and where no sensor stands out.
+    SensorError or None
+        None where no sensor stands out, and where its error would explain too little.
     """
-    if not search.seeks_sensor_errors or not search.lacks_something or search.structure.low_pass is not None:
-        return search
-    error = _sensor_error(search)
-    return search if error is None else replace(search, sensor_error=error)
-
-
-def _sensor_error(search: ModelSearch) -> SensorError | None:
-    """Return the error of the sensor whose score stands out, once a fit confirms it."""
     scores = _scores(search)
     ranked = sorted(scores, key=lambda unknown: -scores[unknown])
     if not ranked:
@@ -96,15 +111,16 @@ def _sensor_error(search: ModelSearch) -> SensorError | None:
     if scores[ranked[0]] < max(required, _OUTSTANDING * others):
         return None
     together, statement, std = _FREE[quantity]
-    free = search.refit(
-        _with_stated(search.structure, {statement: std}, channel),
-        _ITERATIONS,
-        beginning_only=True,
-        enough=search.required_of_switch,
+    present, free = (
+        search.refit(structure, _ITERATIONS, beginning_only=True, enough=search.required_of_switch)
+        for structure in (search.structure, _with_stated(search.structure, {statement: std}, channel))
     )
-    gain = free.gain_over(search)
-    # Far from the recordings the sensor has to be much of what is wrong: any freedom gains something there.
-    if gain < required or (search.is_misfit_large and gain < _EXPLAINS * search.unexplained_gain):
+    # What is stated of the sensors gains as well: a fit may have pulled it far off to explain the recordings.
+    gain = free.gain_over(present)
+    # Far from the recordings the sensor has to be much of what is wrong: any freedom gains something there. But a place may
+    # have been pulled far from what is stated already.
+    is_pulled = statement == "position_std" and scores[ranked[0]] > _FAR
+    if gain < required or (search.is_misfit_large and not is_pulled and gain < _EXPLAINS * search.unexplained_gain):
         return None
     lifted = lift_priors(free.fit, [sensor_unknown(one, channel) for one in together])
     # The uncertainty of the distance from what is stated counts that of the statement, which is none now.

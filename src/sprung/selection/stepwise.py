@@ -15,11 +15,11 @@ from sprung.preprocess import FreeDecay
 from sprung.selection.backward_elimination import counterpart_of, leave_out_unneeded
 from sprung.selection.contact import from_contact
 from sprung.selection.error_budget import MISFIT_LEFT, MISFIT_LEFT_BY_ALL
+from sprung.selection.evident_faults import with_evident_fault
 from sprung.selection.low_pass import confirm_low_pass, select_low_pass
 from sprung.selection.ordinary_vehicle import fit_from_ordinary_vehicle
 from sprung.selection.scoring import WORTH_A_FIT, Scores, score_terms
 from sprung.selection.search import ModelSearch
-from sprung.selection.sensor_errors import with_sensor_error
 from sprung.selection.term_fits import (
     begin_nonlinear_fit,
     fit_linear_term,
@@ -110,10 +110,10 @@ def select_terms_beside(search: ModelSearch) -> ModelSearch:
     Returns
     -------
     ModelSearch
-        As given where one sensor is in error, with what is wrong with it.
+        As given where a sensor or drops are at fault, with what is wrong with them.
     """
-    search = with_sensor_error(search)
-    if search.sensor_error is not None:
+    search = with_evident_fault(search)
+    if search.fault is not None:
         return search
     beginnings = [beginning_of(decay) for decay in search.decays]
     early = from_contact(replace(search, decays=beginnings), on_the_way=True)
@@ -403,8 +403,8 @@ def try_likeliest(search: ModelSearch, terms: Sequence[str], least: float = 0.0)
     against = f"{likeliest} explains the beginnings of the decays better"
     if not search.structure.is_nonlinear:
         tried = replace(search, structure=search.with_terms([likeliest]), fit=first[likeliest])
-        if (error := with_sensor_error(tried).sensor_error) is not None:
-            return replace(search, sensor_error=error)
+        if (fault := with_evident_fault(tried).fault) is not None:
+            return replace(search, fault=fault)
     others = dict.fromkeys((term for term in terms if term != likeliest), 0.0)
     return try_term(search.recorded(others, True, False, against), likeliest, first=first[likeliest])
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -39,9 +39,13 @@ def exchanged_loads(base: CandidateFit) -> Iterator[Hypothesis]:
         candidate = base.step(relabel_loads(labels), candidate.fit)
     moved = {file: load for file, load in labels.items() if load != stated[file]}
     if moved and len(moved) < len(stated):
-        what = "these drops move as if their loads were exchanged; corrected"
-        fault = Fault("load-exchanged", ", ".join(moved), what, _DO)
-        yield Hypothesis(fault, "corrected", relabel_loads(moved), candidate.table, candidate)
+        yield Hypothesis(loads_fault(moved), "corrected", relabel_loads(moved), candidate.table, candidate)
+
+
+def loads_fault(recordings: Iterable[str]) -> Fault:
+    """Return the fault of drops whose loads are exchanged, by their recordings."""
+    what = "these drops move as if their loads were exchanged; corrected"
+    return Fault("load-exchanged", ", ".join(recordings), what, _DO)
 
 
 def _most_likely_loads(base: CandidateFit, candidate: CandidateFit, loads: list[str]) -> dict[str, str]:

@@ -13,7 +13,11 @@ from sprung.faults.hypothesis import Hypothesis
 def unlike_repeats(deletion: DropDeletion) -> Iterator[Hypothesis]:
     """Let every parameter be another one in this drop."""
     names = deletion.candidate.fit.names
+    yield deletion.left_out(unlike_fault(deletion.name), residual_with_free(deletion, names), len(names))
+
+
+def unlike_fault(recording: str) -> Fault:
+    """Return the fault of a drop that contradicts all others, by its recording."""
     what = "the drop contradicts all other drops, which agree with each other; it is left out"
     do = "Record the drop again; if other drops agree with this one, leave the rest out instead."
-    fault = Fault("unlike-repeats", deletion.name, what, do)
-    yield deletion.left_out(fault, residual_with_free(deletion, names), len(names))
+    return Fault("unlike-repeats", recording, what, do)

@@ -1,4 +1,4 @@
-"""The correction of a sensor whose error was found beside nonlinear terms, as an unknown of their fit."""
+"""Corrections of what was found beside nonlinear terms: a sensor in error, drops that are unlike all others."""
 
 from __future__ import annotations
 
@@ -7,13 +7,22 @@ from dataclasses import replace
 from typing import Any
 
 from sprung.errors import Fault
+from sprung.faults.campaign.exchanged_loads import loads_fault
 from sprung.faults.candidate_fit import CandidateFit
 from sprung.faults.channel.delay import delay_fault
 from sprung.faults.channel.gain import gain_fault
 from sprung.faults.channel.position import position_fault
-from sprung.faults.correction import Correction, advance_channel, describe_sensor, scale_channel
+from sprung.faults.correction import (
+    Correction,
+    advance_channel,
+    describe_sensor,
+    exclude_drops,
+    relabel_loads,
+    scale_channel,
+)
+from sprung.faults.drop.unlike import unlike_fault
 from sprung.faults.hypothesis import Hypothesis
-from sprung.selection import SensorError
+from sprung.selection import SensorError, UnlikeDrops
 from sprung.vehicle import Sensor
 
 _STATED = {"gain_std", "position_std", "delay_std"}
@@ -23,21 +32,45 @@ _LEFT = 0.05
 """Part of a correction that may be left, as its standard uncertainty: it was estimated with a model that may lack something."""
 
 
-def correct_sensor_error(base: CandidateFit, error: SensorError) -> Hypothesis:
-    """Return the hypothesis that a sensor is in error as a fit beside nonlinear terms found it.
+def correct_beside_terms(base: CandidateFit, fault: SensorError | UnlikeDrops) -> list[Hypothesis]:
+    """Return the hypotheses that sensors or drops are at fault as the search for nonlinear terms found it.
 
     Parameters
     ----------
     base
         The present fit of the campaign as it is.
-    error
+    fault
         What was found.
 
     Returns
     -------
-    Hypothesis
-        Its correction states of the sensor how uncertain that is: what is left of the error remains an unknown of each fit.
+    list of Hypothesis
+        The correction of a sensor states how uncertain it is: what is left of its error remains an unknown of each fit.
     """
+    if isinstance(fault, SensorError):
+        return [_of_sensor(base, fault)]
+    if fault.loads:
+        return [
+            Hypothesis(
+                loads_fault(fault.recordings),
+                "corrected",
+                relabel_loads(fault.loads),
+                base.table,
+                base,
+                is_fitted=True,
+                is_sufficient=True,
+            )
+        ]
+    return [
+        Hypothesis(
+            unlike_fault(name), "left out", exclude_drops(name), base.table, base, recording=name, is_specific=False
+        )
+        for name in fault.recordings
+    ]
+
+
+def _of_sensor(base: CandidateFit, error: SensorError) -> Hypothesis:
+    """Return the hypothesis that a sensor is in error."""
     sensors = base.campaign.sensors
     channel = [sensor.channel for sensor in sensors].index(error.channel)
     std = max(max(uncertainty, _LEFT * abs(size)) for size, uncertainty in error.found.values())

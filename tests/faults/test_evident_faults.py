@@ -1,4 +1,4 @@
-"""The one sensor in error of a car that is not linear is found beside its terms and corrected; what a model lacks blames none."""
+"""What is wrong with a sensor or drops of a car that is not linear is found beside its terms; a missing term blames none."""
 
 from __future__ import annotations
 
@@ -14,22 +14,26 @@ from real_outcomes import examine
 import sprung
 from sprung.campaign import Campaign
 from sprung.estimation import fit_linear
-from sprung.faults import CandidateFit, correct_sensor_error
+from sprung.faults import CandidateFit, correct_beside_terms
 from sprung.preprocess import prepare
-from sprung.selection import ModelSearch, SensorError, choose_structure
-from sprung.selection.sensor_errors import with_sensor_error
+from sprung.selection import ModelSearch, SensorError, UnlikeDrops, choose_structure
+from sprung.selection.evident_faults import with_evident_fault
 from sprung.vehicle import TABLE_1_CAR, Vehicle
 
 RATE, LATE, MOVED = 500.0, 3, 0.25
-CAR = Vehicle.from_parameters(TABLE_1_CAR.parameters | {"r_f": 2.5, "r_r": 2.2, "F_f": 80.0, "F_r": 60.0})
-TERMS = ("friction", "rebound")
-DROPS = [{"wheels": wheels} for wheels in (("fl", "fr"), ("rl", "rr"), ("fl", "rl"), ("fl", "fr", "rl", "rr"))]
+CAR = Vehicle.from_parameters(TABLE_1_CAR.parameters | {"r_f": 2.5, "r_r": 2.2})
+TERMS = ("rebound",)
+BALLAST = {"name": "ballast", "items": [{"mass": 150.0, "position": [-1.8, 0.2, 0.6]}]}
+WAYS = (("fl", "fr"), ("rl", "rr"), ("fl", "rl"), ("fl", "fr", "rl", "rr"))
+DROPS = [{"wheels": wheels, "load": load} for load in ("empty", "ballast") for wheels in WAYS]
 
 
 @cache
 def sound() -> Campaign:
     known = {"m_s": TABLE_1_CAR.m_s}
-    return sprung.simulate(CAR, drops=DROPS, seed=2, known=known, rate=RATE, noise=0.02, sensor_errors=True)
+    return sprung.simulate(
+        CAR, loads=[BALLAST], drops=DROPS, seed=2, known=known, rate=RATE, noise=0.02, sensor_errors=True
+    )
 
 
 def delayed(campaign: Campaign, channel: str, samples: int) -> Campaign:
@@ -54,20 +58,20 @@ def moved(campaign: Campaign, channel: str, by: float) -> Campaign:
     return replace(campaign, sensors=tuple(sensors))
 
 
-def found(campaign: Campaign, terms: tuple[str, ...] = TERMS) -> tuple[ModelSearch, SensorError | None]:
-    """Look for the error of a sensor beside a model that is fitted from the true vehicle."""
+def found(campaign: Campaign, terms: tuple[str, ...] = TERMS) -> tuple[ModelSearch, SensorError | UnlikeDrops | None]:
+    """Look for what is wrong beside a model that is fitted from the true vehicle."""
     decays, plain = prepare(campaign).decays, choose_structure(campaign, "shared", ())
     start = {name: CAR.parameters[name] for name in plain.names}
     linear = fit_linear(decays, plain.linear_models, plain.sensors, plain.known, start=start, most=0)
-    search = ModelSearch(plain, linear, decays, seeks_sensor_errors=True)
+    search = ModelSearch(plain, linear, decays, seeks_faults=True)
     fitted = search.refit(choose_structure(campaign, "shared", terms), 22, beginning_only=True)
-    return fitted, with_sensor_error(fitted).sensor_error
+    return fitted, with_evident_fault(fitted).fault
 
 
 @pytest.mark.slow
-def test_no_sensor_is_blamed_where_none_is_in_error() -> None:
-    """Nor for friction that the model has not, whatever that leaves."""
-    for terms in (TERMS, ("rebound",)):
+def test_nothing_is_blamed_where_nothing_is_wrong() -> None:
+    """Nor for rebound that the model has not, whatever that leaves."""
+    for terms in (TERMS, ("progressive",)):
         assert found(sound(), terms)[1] is None
 
 
@@ -77,10 +81,10 @@ def test_a_channel_that_is_late_is_found_and_corrected(channel: str) -> None:
     """To half a sample, on the way of a fit that went astray with it: what is left is an unknown then."""
     campaign = delayed(sound(), channel, LATE)
     search, error = found(campaign)
-    assert error is not None
+    assert isinstance(error, SensorError)
     assert (error.channel, [*error.found]) == (channel, ["delay"])
     assert error.found["delay"][0] == pytest.approx(LATE / RATE, abs=0.4 / RATE)
-    wrong = correct_sensor_error(CandidateFit.of(search.structure, search.decays, search.fit), error)
+    (wrong,) = correct_beside_terms(CandidateFit.of(search.structure, search.decays, search.fit), error)
     assert (wrong.fault.code, wrong.fault.where) == ("late", channel)
     corrected = wrong.correction.of_campaign(campaign)
     for one, before in zip(corrected.recordings, sound().recordings, strict=True):
@@ -93,16 +97,45 @@ def test_a_channel_that_is_late_is_found_and_corrected(channel: str) -> None:
 def test_a_sensor_that_sits_elsewhere_is_found_and_corrected() -> None:
     campaign = moved(sound(), "body_rl", MOVED)
     search, error = found(campaign)
-    assert error is not None
+    assert isinstance(error, SensorError)
     assert error.channel == "body_rl"
     assert error.found["x"][0] == pytest.approx(-MOVED, abs=0.05)
-    wrong = correct_sensor_error(CandidateFit.of(search.structure, search.decays, search.fit), error)
+    (wrong,) = correct_beside_terms(CandidateFit.of(search.structure, search.decays, search.fit), error)
     assert (wrong.fault.code, wrong.fault.where) == ("position", "body_rl")
     places = {
         one.channel: one.position for one in wrong.correction.of_campaign(campaign).sensors if one.channel == "body_rl"
     }
     true = {one.channel: one.position for one in sound().sensors if one.channel == "body_rl"}
     np.testing.assert_allclose(places["body_rl"] or (), true["body_rl"] or (), atol=0.05)
+
+
+@pytest.mark.slow
+def test_drops_whose_loads_are_exchanged_are_found_and_corrected() -> None:
+    drops = list(sound().drops)
+    names = tuple(drops[number].recording.name for number in (1, 5))
+    for number, load in ((1, "ballast"), (5, "empty")):
+        drops[number] = replace(drops[number], load=load)
+    search, fault = found(replace(sound(), drops=tuple(drops)))
+    assert isinstance(fault, UnlikeDrops)
+    assert fault == UnlikeDrops(names, {names[0]: "empty", names[1]: "ballast"})
+    (wrong,) = correct_beside_terms(CandidateFit.of(search.structure, search.decays, search.fit), fault)
+    assert (wrong.fault.code, wrong.fault.where) == ("load-exchanged", ", ".join(names))
+    corrected = wrong.correction.of_campaign(search.structure.campaign)
+    assert [drop.load for drop in corrected.drops] == [drop.load for drop in sound().drops]
+
+
+@pytest.mark.slow
+def test_a_drop_of_another_mass_is_left_out() -> None:
+    """Two passengers whom nobody declared: no load makes it like the others."""
+    heavier = Vehicle.from_parameters(CAR.parameters | {"m_s": CAR.m_s + 150, "I_yy": 1.1 * CAR.I_yy})
+    other = sprung.simulate(heavier, drops=DROPS[2:3], seed=3, rate=RATE, noise=0.02, sensor_errors=False)
+    recordings = list(sound().recordings)
+    recordings[2] = replace(recordings[2], values=other.recordings[0].values)
+    search, fault = found(sound().with_recordings(recordings))
+    assert fault == UnlikeDrops((recordings[2].name,), {})
+    (wrong,) = correct_beside_terms(CandidateFit.of(search.structure, search.decays, search.fit), fault)
+    assert (wrong.fault.code, wrong.fault.where) == ("unlike-repeats", recordings[2].name)
+    assert (wrong.remedy, wrong.recording) == ("left out", recordings[2].name)
 
 
 @pytest.mark.long
