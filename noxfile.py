@@ -132,6 +132,7 @@ def studies(session: nox.Session) -> None:
         "ride",
         "modal",
         "real_cars",
+        "real_car_faults",
         "fleets",
     ):
         session.run("python", f"docs/studies/{study}.py", *(session.posargs or ("--processes", "2")))

@@ -124,7 +124,7 @@ def try_one(number: int, seed: int, injury: Injury) -> Outcome | None:
     if injured is None:
         return None
     try:
-        result = sprung.identify(_read_back(injured))
+        result = sprung.identify(read_back(injured))
     except InputError as refusal:
         text = str(refusal)
         noticed = any(name in text for name in injured.names)
@@ -186,7 +186,7 @@ def _distances(result: sprung.Result, sound: sprung.Result) -> tuple[float, floa
     return float(np.max(off)), float(np.sqrt(np.mean(np.square(off)))), float(np.max(own)), lost
 
 
-def _read_back(injured: Injured) -> sprung.Campaign:
+def read_back(injured: Injured) -> sprung.Campaign:
     """Write a campaign, change the one file, and read it again, where that is how it is spoilt."""
     if injured.rewrite is None or injured.file is None:
         return injured.campaign

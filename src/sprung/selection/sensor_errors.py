@@ -37,13 +37,10 @@ _OUTSTANDING = 2.0
 """By how many times the score of one sensor stands out from that of any other: what a model lacks shows in several."""
 
 _EXPLAINS = 0.1
-"""Part of what noise alone would gain that the sensor gains at least, where the model explains the recordings but roughly."""
+"""Part of what noise alone would gain that the sensor gains at least."""
 
 _PULLED = 5.0
 """Standard uncertainties by which an unknown of a sensor is far from what is stated."""
-
-_FAR = 200.0
-"""Score of a place from which nothing else that a model lacks explains it."""
 
 _TELLS_GAIN = 0.1
 """Part of gravity at rest from which a sensor that feels it has shown its gain before any fit."""
@@ -117,10 +114,8 @@ def find_sensor_error(search: ModelSearch) -> SensorError | None:
     )
     # What is stated of the sensors gains as well: a fit may have pulled it far off to explain the recordings.
     gain = free.gain_over(present)
-    # Far from the recordings the sensor has to be much of what is wrong: any freedom gains something there. But a place may
-    # have been pulled far from what is stated already.
-    is_pulled = statement == "position_std" and scores[ranked[0]] > _FAR
-    if gain < required or (search.is_misfit_large and not is_pulled and gain < _EXPLAINS * search.unexplained_gain):
+    # Where a term is missing any freedom gains something: a body that bends seems to have a sensor elsewhere.
+    if gain < max(required, _EXPLAINS * search.unexplained_gain):
         return None
     lifted = lift_priors(free.fit, [sensor_unknown(one, channel) for one in together])
     # The uncertainty of the distance from what is stated counts that of the statement, which is none now.
