@@ -140,9 +140,11 @@ def _left_by_flexible_body(base: CandidateFit) -> tuple[float, int]:
     search = ModelSearch(base.structure, base.fit, base.decays)
     if not search.is_misfit_large or {*FLEXIBLE_BODIES} & {*base.structure.terms}:
         return np.inf, 0
-    bodies = fit_flexible_bodies(search, FLEXIBLE_BODIES).values()
-    tables = [residual_table(base.recordings, base.decays, body.fit) for body in bodies]
-    return min((table.misfit(base.noise) for table in tables), default=np.inf), len(tables)
+    # A body of any mass and damping explains whatever is wrong with one sensor on it, and is none that the records need.
+    bodies = fit_flexible_bodies(search, FLEXIBLE_BODIES)
+    needed = [body for term, body in bodies.items() if body.needs(term)]
+    tables = [residual_table(base.recordings, base.decays, body.fit) for body in needed]
+    return min((table.misfit(base.noise) for table in tables), default=np.inf), len(bodies)
 
 
 def _groups(

@@ -8,6 +8,7 @@ from sprung.preprocess.fall import BLOW, IMPACT, WHEEL_SPEED, detect_dropped_cha
 from sprung.preprocess.first_motion import (
     begins_upward,
     count_disagreeing_drops,
+    is_body_slower,
     is_first_motion_consistent,
     redetect_dropped_wheels,
 )
@@ -46,6 +47,7 @@ __all__ = [
     "find_slower_drops",
     "find_steepest_rise",
     "is_ac_coupled",
+    "is_body_slower",
     "is_first_motion_consistent",
     "measure_fall",
     "merge_dropped_wheels",

@@ -81,6 +81,27 @@ def count_disagreeing_drops(campaign: Campaign, prepared: Prepared) -> int:
     )
 
 
+def is_body_slower(campaign: Campaign, prepared: Prepared) -> bool:
+    """Whether every sensor of the body gains less speed at once than the fastest one of the wheels, as in any vehicle.
+
+    Parameters
+    ----------
+    campaign
+        States which sensors are on the body.
+    prepared
+        Its recordings.
+
+    Returns
+    -------
+    bool
+    """
+    accelerometers = np.array([sensor.reads_gravity for sensor in campaign.sensors])
+    body = np.array([sensor.on == "body" for sensor in campaign.sensors])
+    squares = np.nan_to_num(_gained(prepared, len(body), _AT_ONCE)) ** 2
+    fastest = squares.sum(axis=0)
+    return bool(fastest[accelerometers & body].max(initial=0.0) < fastest[accelerometers & ~body].max(initial=0.0))
+
+
 def begins_upward(campaign: Campaign, prepared: Prepared) -> bool:
     """Whether the largest motion, among the body's sensors or among those of the wheels, begins upward: no vehicle does.
 

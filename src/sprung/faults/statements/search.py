@@ -22,6 +22,7 @@ from sprung.preprocess import (
     Prepared,
     begins_upward,
     count_disagreeing_drops,
+    is_body_slower,
     is_first_motion_consistent,
     merge_dropped_wheels,
     prepare,
@@ -36,10 +37,12 @@ _HYPOTHESES = (
     other_origin,
     exchanged_axes,
     exchanged_sides,
-    exchanged_channels,
-    wrong_wheels,
 )
 """In the order in which they are believed where the recordings cannot tell them apart."""
+
+_OF_ONE_WHEEL = (exchanged_channels, wrong_wheels)
+"""Those about one channel or two: with them wheels have to fall and stand as stated more often, clearly in every drop, and the
+body has to be slower than the wheels."""
 
 _FEWEST = 3
 """Sensors on the body that show how it turns."""
@@ -103,20 +106,24 @@ def with_common_cause_corrected(campaign: Campaign, prepared: Prepared) -> Campa
     if wheelbase is None:
         return campaign
     is_contradicted = _consistent(campaign, prepared, stated, wheelbase) is False
-    if not is_contradicted and not _is_any_wheel_unclear(campaign, stated):
+    if not is_contradicted and _count_unclear(campaign, stated) < _SEVERAL:
         return campaign
     if is_contradicted and _one_drop_explains(campaign, prepared, wheelbase):
         return campaign
     found: dict[int, list[CommonCause]] = {}
-    for hypotheses in _HYPOTHESES:
+    before = _confirmed(campaign, stated)
+    for hypotheses in (*_HYPOTHESES, *_OF_ONE_WHEEL):
         for fault, changed in hypotheses(campaign, wheelbase):
             again = prepared if changed.recordings == campaign.recordings else prepare(changed)
             dropped = redetect_dropped_wheels(changed, again)
-            if _consistent(changed, again, dropped, wheelbase):
-                found.setdefault(_confirmed(changed, dropped), []).append((fault, changed))
+            is_clear = _count_unclear(changed, dropped) == 0 and is_body_slower(changed, again)
+            confirmed = _confirmed(changed, dropped)
+            is_shown = hypotheses in _HYPOTHESES or (is_clear and confirmed > before)
+            if is_shown and _consistent(changed, again, dropped, wheelbase):
+                found.setdefault(confirmed, []).append((fault, changed))
     # What shows nothing clear contradicts nothing, either: the more wheels are confirmed the better.
     most = max(found, default=0)
-    if not found or (not is_contradicted and most <= _confirmed(campaign, stated)):
+    if not found or (not is_contradicted and most <= before):
         return campaign
     fault, changed = found[most][0] if len(found[most]) == 1 else _most_likely(campaign, found[most])
     return replace(changed, faults=(*changed.faults, fault))
@@ -128,12 +135,12 @@ def _confirmed(campaign: Campaign, dropped: Sequence[Dropped]) -> int:
     return sum(falls == (wheel in drop.wheels) for drop, shown in pairs for wheel, falls in shown.items())
 
 
-def _is_any_wheel_unclear(campaign: Campaign, dropped: Sequence[Dropped]) -> bool:
-    """Whether the sensor of a wheel does not show clearly whether it falls in several drops in which it should."""
+def _count_unclear(campaign: Campaign, dropped: Sequence[Dropped]) -> int:
+    """Return in how many drops in which a wheel should fall its sensor does not show clearly whether it does, at the most."""
     wheels = {sensor.wheel for sensor in campaign.sensors if sensor.wheel is not None and sensor.reads_gravity}
     pairs = [(set(drop.wheels), shown) for drop, shown in zip(campaign.drops, dropped, strict=True) if shown]
     unclear = [sum(wheel in stated and wheel not in shown for stated, shown in pairs) for wheel in wheels]
-    return max(unclear, default=0) >= _SEVERAL
+    return max(unclear, default=0)
 
 
 def _wheelbase(campaign: Campaign) -> float | None:
