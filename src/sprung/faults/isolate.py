@@ -164,13 +164,14 @@ def _groups(
     progress(Step("testing for exchanged loads and channels"))
     exchanges = _with_refined(base, [*exchanged_loads(base), *exchanged_channels(base)])
     is_likelier = min((one.score() for one in exchanges), default=np.inf) < limit.cost
+    anew = int(len({decay.load for decay in base.decays}) == 2)
     if is_likelier or is_alone:
-        yield exchanges, 0
+        yield exchanges, anew
     # Where the body twists, each of its sensors contradicts the others: no part is to be examined.
     if not is_alone and torsion_test(base) is None:
         yield _of_parts(base, deletions, progress)
     if not (is_likelier or is_alone):
-        yield exchanges, 0
+        yield exchanges, anew
 
 
 def _wrong_statement(base: CandidateFit) -> tuple[Hypothesis | None, int]:

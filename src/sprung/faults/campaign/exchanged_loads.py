@@ -26,7 +26,8 @@ def exchanged_loads(base: CandidateFit) -> Iterator[Hypothesis]:
     if len(loads) == 2:
         opposite = dict(zip(loads, loads[::-1], strict=True))
         correction = relabel_loads({file: opposite[load] for file, load in stated.items()})
-        candidate = base.estimate(correction)
+        # The vehicle becomes another one altogether, to which few steps from the present one or a direct estimate do not lead.
+        candidate = base.estimate(correction) if base.is_explained else base.refit(correction)
         what = f"loads '{loads[0]}' and '{loads[1]}' are exchanged in all drops; corrected"
         fault = Fault("load-exchanged", f"all drops, {loads[0]} and {loads[1]}", what, _DO)
         yield Hypothesis(fault, "corrected", correction, candidate.table, candidate)
