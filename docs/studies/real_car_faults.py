@@ -147,7 +147,10 @@ def page(found: Sequence[Found]) -> str:
         if not one.is_named
     ]
     campaigns = max((one.outcome.seed for one in found), default=0) + 1
-    what = "\n".join(f"- {name}: {INJURIES[name].what}." for name in FAULTS)
+    done = [name for name in FAULTS if by_fault[name]]
+    what = "\n".join(f"- {name}: {INJURIES[name].what}." for name in done)
+    only = "".join(f' "{name}"' for name in done) if len(done) < len(FAULTS) else ""
+    chosen = f" --faults{only}" if only else ""
     return f"""# Faults in cars as they are
 
 No linear model describes a car with mounts, knees, stiffening tyres or a body that twists, and no such term explains a fault.
@@ -180,7 +183,7 @@ Every campaign is in [real-car-faults.json](real-car-faults.json).
 
 ## Reproduction
 
-    python docs/studies/real_car_faults.py --campaigns {campaigns} --processes 2
+    python docs/studies/real_car_faults.py --campaigns {campaigns}{chosen} --processes 2
 """
 
 
