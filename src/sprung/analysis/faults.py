@@ -24,16 +24,15 @@ from sprung.faults import (
 from sprung.preprocess import FreeDecay
 from sprung.progress import Progress, Step, silent
 from sprung.selection import (
+    FAR,
     SEPARATE_TRACKS,
     ModelSearch,
     ModelStructure,
     fit_structure,
+    furthest_from_stated,
     needed_terms,
 )
-from sprung.vehicle import SensorQuantity, sensor_unknown
-
-_FAR = 5.0
-"""Standard uncertainties from which a sensor is not what is stated of it."""
+from sprung.vehicle import SensorQuantity
 
 _SAME_MISFIT = 0.5
 """Part of a misfit of which no fault explained any; one that explains all that is left would have explained so much then."""
@@ -93,17 +92,10 @@ def _suspected_sensor(search: ModelSearch) -> tuple[Fault, ...]:
     """
     if search.has_model_error:
         return ()
-    found = search.fit.parameters
-    far = [
-        ((found[name] - stated.value) / stated.std, sensor.channel, what)
-        for sensor in search.structure.sensors
-        for quantity, what in _IN_WORDS.items()
-        if (name := sensor_unknown(quantity, sensor.channel)) in found
-        and (stated := sensor.uncertainties.get(name)) is not None
-    ]
-    ratio, channel, what = max(far, key=lambda one: abs(one[0]), default=(0.0, "", ""))
-    if abs(ratio) < _FAR:
+    ratio, channel, quantity = furthest_from_stated(search)
+    if abs(ratio) < FAR:
         return ()
+    what = _IN_WORDS[quantity]
     text = f"the fit takes its {what} {abs(ratio):.0f} times as far from what is stated as its standard uncertainty"
     do = "Check this sensor and those near it; correct what is stated of it."
     return (Fault("unlike-others", channel, f"{text}; nothing was changed", do),)

@@ -74,6 +74,9 @@ def count_disagreeing_drops(campaign: Campaign, prepared: Prepared) -> int:
     -------
     int
     """
+    shared = [sensor.wheel for sensor in campaign.sensors if sensor.wheel is not None and sensor.reads_gravity]
+    if len({*shared}) == len(shared):  # one sensor on each wheel, as in most campaigns
+        return 0
     return sum(
         bool(find_disagreeing_wheels(seen.recording, seen.rest, campaign.sensors))
         for seen in prepared.observations
@@ -95,11 +98,9 @@ def is_body_slower(campaign: Campaign, prepared: Prepared) -> bool:
     -------
     bool
     """
-    accelerometers = np.array([sensor.reads_gravity for sensor in campaign.sensors])
-    body = np.array([sensor.on == "body" for sensor in campaign.sensors])
-    squares = np.nan_to_num(_gained(prepared, len(body), _AT_ONCE)) ** 2
-    fastest = squares.sum(axis=0)
-    return bool(fastest[accelerometers & body].max(initial=0.0) < fastest[accelerometers & ~body].max(initial=0.0))
+    body, others = _accelerometers(campaign)
+    fastest = (np.nan_to_num(_gained(prepared, len(body), _AT_ONCE)) ** 2).sum(axis=0)
+    return bool(fastest[body].max(initial=0.0) < fastest[others].max(initial=0.0))
 
 
 def begins_upward(campaign: Campaign, prepared: Prepared) -> bool:
@@ -116,10 +117,16 @@ def begins_upward(campaign: Campaign, prepared: Prepared) -> bool:
     -------
     bool
     """
-    accelerometers = np.array([sensor.reads_gravity for sensor in campaign.sensors])
-    body = accelerometers & np.array([sensor.on == "body" for sensor in campaign.sensors])
+    body, others = _accelerometers(campaign)
     gained, at_once = (_gained(prepared, len(body), span) for span in (_AFTER, _AT_ONCE))
-    return _rises(gained[:, body]) or _rises(at_once[:, accelerometers & ~body])
+    return _rises(gained[:, body]) or _rises(at_once[:, others])
+
+
+def _accelerometers(campaign: Campaign) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Return which channels are accelerometers on the body, and which elsewhere, shape (channel,) each."""
+    accelerometers = np.array([sensor.reads_gravity for sensor in campaign.sensors])
+    on_body = np.array([sensor.on == "body" for sensor in campaign.sensors])
+    return accelerometers & on_body, accelerometers & ~on_body
 
 
 def _gained(prepared: Prepared, channels: int, span: float) -> Real:

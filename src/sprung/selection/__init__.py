@@ -17,7 +17,7 @@ from sprung.selection.model_term import ModelTerm
 from sprung.selection.nonlinear import select_nonlinear_terms
 from sprung.selection.scoring import WORTH_A_FIT, score_terms
 from sprung.selection.search import ModelSearch, SelectionStep
-from sprung.selection.sensor_errors import SensorError
+from sprung.selection.sensor_errors import FAR, SensorError, furthest_from_stated
 from sprung.selection.starts import fit_structure
 from sprung.selection.stepwise import select_linear_terms, try_term
 from sprung.selection.structure import ModelStructure, choose_structure
@@ -35,6 +35,7 @@ from sprung.selection.unlike_drops import UnlikeDrops
 __all__ = [
     "ENGINE",
     "FALSE_ALARM_SHARE",
+    "FAR",
     "FLEXIBLE_BODIES",
     "SEPARATE_TRACKS",
     "STARTED_LATER",
@@ -59,6 +60,7 @@ __all__ = [
     "fit_structure",
     "fit_term",
     "from_contact",
+    "furthest_from_stated",
     "leave_out_refused",
     "leave_out_undetermined",
     "leave_out_unneeded",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from sprung.selection.search import ModelSearch
-from sprung.selection.sensor_errors import find_sensor_error, is_sensor_pulled
+from sprung.selection.sensor_errors import FAR, find_sensor_error, furthest_from_stated
 from sprung.selection.unlike_drops import find_unlike_drops
 
 
@@ -24,7 +24,8 @@ def with_evident_fault(search: ModelSearch) -> ModelSearch:
     """
     if not search.seeks_faults or search.structure.low_pass is not None:
         return search
-    if not search.lacks_something and not is_sensor_pulled(search):
+    # What a sensor has been pulled far for leaves nothing to explain.
+    if not search.lacks_something and abs(furthest_from_stated(search)[0]) <= FAR:
         return search
     fault = find_sensor_error(search) or find_unlike_drops(search)
     return search if fault is None else replace(search, fault=fault)

@@ -17,7 +17,7 @@ from sprung.estimation import lift_priors
 from sprung.selection.error_budget import required_gain
 from sprung.selection.structure import ModelStructure
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import LARGEST_PLACE, Sensor, SensorQuantity, sensor_unknown
+from sprung.vehicle import LARGEST_PLACE, SENSOR_UNKNOWNS, Sensor, SensorQuantity, sensor_unknown
 
 if TYPE_CHECKING:
     from sprung.selection.search import ModelSearch
@@ -39,8 +39,8 @@ _OUTSTANDING = 2.0
 _EXPLAINS = 0.1
 """Part of what noise alone would gain that the sensor gains at least."""
 
-_PULLED = 5.0
-"""Standard uncertainties by which an unknown of a sensor is far from what is stated."""
+FAR = 5.0
+"""Standard uncertainties from which a sensor is not what is stated of it."""
 
 _TELLS_GAIN = 0.1
 """Part of gravity at rest from which a sensor that feels it has shown its gain before any fit."""
@@ -59,17 +59,14 @@ class SensorError(NamedTuple):
     found
         Gain (the part by which it reads too much), or place (m further forward and left than stated), or delay (s), with
         standard uncertainties, by the unknown.
-    gain
-        What twice the log-likelihood gains, over the overdispersion.
     """
 
     channel: str
     found: Mapping[SensorQuantity, tuple[float, float]]
-    gain: float
 
 
-def is_sensor_pulled(search: ModelSearch) -> bool:
-    """Whether a fit takes an unknown of a sensor far from what is stated of it, so that nothing may be left to explain.
+def furthest_from_stated(search: ModelSearch) -> tuple[float, str, SensorQuantity]:
+    """Return the unknown of a sensor that a fit takes furthest from what is stated of it.
 
     Parameters
     ----------
@@ -78,11 +75,18 @@ def is_sensor_pulled(search: ModelSearch) -> bool:
 
     Returns
     -------
-    bool
+    tuple
+        How far, in standard uncertainties with its sign, the channel, and which unknown; 0 where nothing of sensors is unknown.
     """
     found = search.fit.parameters
-    stated = {name: one for sensor in search.structure.sensors for name, one in sensor.uncertainties.items()}
-    return any(abs(found[name] - one.value) > _PULLED * one.std for name, one in stated.items() if name in found)
+    far: list[tuple[float, str, SensorQuantity]] = [
+        ((found[name] - stated.value) / stated.std, sensor.channel, quantity)
+        for sensor in search.structure.sensors
+        for quantity in SENSOR_UNKNOWNS
+        if (name := sensor_unknown(quantity, sensor.channel)) in found
+        and (stated := sensor.uncertainties.get(name)) is not None
+    ]
+    return max(far, key=lambda one: abs(one[0]), default=(0.0, "", "gain"))
 
 
 def find_sensor_error(search: ModelSearch) -> SensorError | None:
@@ -124,7 +128,7 @@ def find_sensor_error(search: ModelSearch) -> SensorError | None:
         for one in together
         if (name := sensor_unknown(one, channel)) in lifted
     }
-    return SensorError(channel, found, gain) if quantity in found else None
+    return SensorError(channel, found) if quantity in found else None
 
 
 def _scores(search: ModelSearch) -> dict[tuple[str, SensorQuantity], float]:

@@ -31,13 +31,7 @@ from sprung.preprocess import (
 from sprung.progress import Progress, silent
 from sprung.selection import ModelStructure
 
-_HYPOTHESES = (
-    mirrored_positions,
-    upside_down,
-    other_origin,
-    exchanged_axes,
-    exchanged_sides,
-)
+_HYPOTHESES = (mirrored_positions, upside_down, other_origin, exchanged_axes, exchanged_sides)
 """In the order in which they are believed where the recordings cannot tell them apart."""
 
 _OF_ONE_WHEEL = (exchanged_channels, wrong_wheels)
@@ -116,9 +110,10 @@ def with_common_cause_corrected(campaign: Campaign, prepared: Prepared) -> Campa
         for fault, changed in hypotheses(campaign, wheelbase):
             again = prepared if changed.recordings == campaign.recordings else prepare(changed)
             dropped = redetect_dropped_wheels(changed, again)
-            is_clear = _count_unclear(changed, dropped) == 0 and is_body_slower(changed, again)
             confirmed = _confirmed(changed, dropped)
-            is_shown = hypotheses in _HYPOTHESES or (is_clear and confirmed > before)
+            is_shown = hypotheses in _HYPOTHESES or (
+                confirmed > before and _count_unclear(changed, dropped) == 0 and is_body_slower(changed, again)
+            )
             if is_shown and _consistent(changed, again, dropped, wheelbase):
                 found.setdefault(confirmed, []).append((fault, changed))
     # What shows nothing clear contradicts nothing, either: the more wheels are confirmed the better.
