@@ -48,6 +48,17 @@ def scaled(campaign: sprung.Campaign, channel: int, factor: float) -> sprung.Cam
     )
 
 
+def test_a_nonlinear_term_that_explains_more_than_a_fault_comes_first() -> None:
+    """Tyres that stiffen seemed to be a brake in the drop from all four wheels."""
+    stiffening = TABLE_1_CAR.with_values(h_tf=5.0, h_tr=5.0)
+    drops = [{"wheels": list(wheels)} for wheels in (WHEELS, WHEELS[:2], WHEELS[2:], WHEELS[::2])]
+    known = {"total_mass": TABLE_1_CAR.total_mass}
+    campaign = sprung.simulate(stiffening, drops=drops, rate=300.0, noise=0.05, seed=1, duration=2.0, known=known)
+    result = sprung.identify(campaign, fall=False)
+    assert "tyre-curve" in result.fit.model
+    assert (result.verdict.state, result.faults) == ("accept", ())
+
+
 def with_friction(last: str) -> Analysis:
     """Analyse a short campaign of a car with dry friction up to a stage."""
     rubbing = TABLE_1_CAR.with_values(F_f=90.0, F_r=70.0, s_f=2.5e5, s_r=2.5e5)

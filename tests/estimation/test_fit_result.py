@@ -209,6 +209,9 @@ def test_a_landing_that_is_not_over_is_left_out(stepped: FitResult) -> None:
     decays, _ = fit_from_contact(struck, linear, first, again)
     assert asked[0][0] == struck[0].samples - 5
     assert decays[0].samples == struck[0].samples - 5
+    unmoved, fit = fit_from_contact(stepped.decays, linear, stepped, again)
+    assert (len(asked), fit) == (1, stepped)
+    assert [decay.samples for decay in unmoved] == [decay.samples for decay in stepped.decays]
 
 
 def critically_damped() -> Vehicle:

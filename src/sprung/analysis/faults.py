@@ -8,7 +8,7 @@ from dataclasses import replace
 from sprung.analysis.analysis import MOST_RESTARTS, Analysis
 from sprung.analysis.baseline import converged
 from sprung.analysis.correcting import restart_corrected
-from sprung.analysis.first_term import explaining_term
+from sprung.analysis.first_term import explaining_term, rivalling_term
 from sprung.analysis.settling import settle_corrections
 from sprung.analysis.terms import select_finite_rotation
 from sprung.errors import Fault
@@ -51,6 +51,8 @@ _IN_WORDS: Mapping[SensorQuantity, str] = {
 def isolate_evident_faults(run: Analysis, progress: Progress) -> Analysis:
     """Correct what explains the recordings wholly, before any further model term is tried."""
     consistency = _consistency(run)
+    if consistency is None:
+        return run
     first = explaining_term(run, consistency)
     if first is not None:
         return replace(run, first_term=first[0]).noted("isolate_evident_faults", f"{first[0]} is tried first", first[1])
@@ -65,8 +67,14 @@ def isolate_evident_faults(run: Analysis, progress: Progress) -> Analysis:
     turned = select_finite_rotation(run, progress)
     if turned.fit is not run.fit:
         run = _with_isolated(turned, _consistency(turned), progress)
-    if not _is_evident(run.found):
-        return run
+    return _restart_without_rival(run) if _is_evident(run.found) else run
+
+
+def _restart_without_rival(run: Analysis) -> Analysis:
+    """Correct evident faults and start again, unless a nonlinear term may explain more: it is tried first."""
+    rival = rivalling_term(run)
+    if rival is not None:
+        return run.noted("isolate_evident_faults", f"{rival[0]} is tried before anything is corrected", rival[1])
     return restart_corrected(run, run.found, "isolate_evident_faults")
 
 

@@ -1,4 +1,4 @@
-"""The model term that is to be tried before faults are isolated, as it explains more than any of them."""
+"""The model terms that are to be tried before faults are isolated or corrected, as they explain more than any of them."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _STEPS, _TERMS = 3, 3
 """Gauss-Newton steps that are taken with each of so many terms."""
 
 
-def explaining_term(run: Analysis, consistency: Consistency | None) -> tuple[str, str] | None:
+def explaining_term(run: Analysis, consistency: Consistency) -> tuple[str, str] | None:
     """Return the linear term that is to be tried before faults are isolated, and why; None where there is none.
 
     It explains most of the misfit where there is one, and more than any fault of small size does. The score test ranks the
@@ -27,9 +27,9 @@ def explaining_term(run: Analysis, consistency: Consistency | None) -> tuple[str
     run
         With a model and its fit.
     consistency
-        Of that fit; None where it was not tested.
+        Of that fit.
     """
-    if consistency in (None, "consistent") or run.model.structure.is_time_stepped:
+    if consistency == "consistent" or run.model.structure.is_time_stepped:
         return None
     terms = run.model.open_terms([name for name, term in TERMS.items() if term.is_linear])
     search, scores = score_terms(run.model, [term for term in terms if term not in run.model.refused])
@@ -50,3 +50,27 @@ def explaining_term(run: Analysis, consistency: Consistency | None) -> tuple[str
     fault = largest_gain_by_steps(base) if is_misfit else largest_expected_gain(run.campaign, run.decays, run.fit)
     why = f"{_STEPS} steps with it gain {gains[best]:.0f}, the likeliest fault is expected to gain {fault:.0f}"
     return (best, why) if gains[best] > fault else None
+
+
+def rivalling_term(run: Analysis) -> tuple[str, str] | None:
+    """Return the nonlinear term that may explain more than the faults that were isolated, and why; None where there is none.
+
+    A campaign of few drops, or a small effect beside much noise, seems to have one drop that differs where it moves most.
+
+    Parameters
+    ----------
+    run
+        With faults that explain the recordings wholly.
+    """
+    if run.model.structure.is_time_stepped:
+        return None
+    terms = run.model.open_terms([name for name, term in TERMS.items() if not term.is_linear])
+    search, scores = score_terms(run.model, terms)
+    expected = {term: gain / run.fit.disagreement for term, (gain, _) in scores.items()}
+    best = max(expected, key=expected.__getitem__, default=None)
+    if best is None or expected[best] < search.required(best):
+        return None
+    base = CandidateFit.of(run.model.structure, run.decays, run.fit)
+    fault = base.table.cost - run.found[-1].table.cost
+    why = f"it is expected to gain {expected[best]:.0f}, the faults {fault:.0f}"
+    return (best, why) if expected[best] > fault else None

@@ -54,6 +54,8 @@ def fit_from_contact(
 ) -> tuple[tuple[FreeDecay, ...], FitResult]:
     """Move the start of each decay to the last contact of its tyres in the fitted vehicle, and fit again until it stays.
 
+    Nothing is fitted where none moves.
+
     Parameters
     ----------
     decays
@@ -70,10 +72,10 @@ def fit_from_contact(
     decays
         With starts where the last tyre last touched.
     fit
-        Of these decays.
+        Of these decays; the first one where none has moved.
     """
     best, fit = tuple(decays), first
-    settled, earliest = False, [decay.start - decay.earlier.shape[1] / decay.rate for decay in best]
+    earliest = [decay.start - decay.earlier.shape[1] / decay.rate for decay in best]
     for _ in range(_PASSES if first.is_reversible else 1):
         ringing = [_ringing(decay, fit, drop) for drop, decay in enumerate(best)]
         # Once a start is behind what rings, nothing shows that it did.
@@ -99,8 +101,8 @@ def fit_from_contact(
             moved, refitted = fit_from_start(best, shifts, fit, again)
             if not _is_as_good(refitted, fit):
                 break
-        best, fit, settled = moved, refitted, True
-    return best, fit if settled else again(best, fit, fit.states).after(fit)
+        best, fit = moved, refitted
+    return best, fit
 
 
 def fit_from_start(

@@ -51,10 +51,35 @@ def from_contact(search: ModelSearch, most: int = MOST_STEPS, on_the_way: bool =
     ModelSearch
     """
     enough = _ON_THE_WAY * search.overdispersion if on_the_way else final_tolerance(search)
+    moved = _moved_to_contact(search, enough, most)
+    if moved is not search:
+        return moved
+    fit = _refit(search, enough, most, search.decays, search.fit, search.fit.states)
+    return replace(search, decays=tuple(search.decays), fit=fit.after(search.fit))
+
+
+def without_landings(search: ModelSearch) -> ModelSearch:
+    """Let decays begin later in which a model that explains more shows the rest of a landing, and fit again.
+
+    Parameters
+    ----------
+    search
+        The present model and its fit, on the way to one with further terms.
+
+    Returns
+    -------
+    ModelSearch
+        As given where no decay begins elsewhere.
+    """
+    return _moved_to_contact(search, _ON_THE_WAY * search.overdispersion, MOST_STEPS)
+
+
+def _moved_to_contact(search: ModelSearch, enough: float, most: int) -> ModelSearch:
+    """Return the search with decays that begin at the last contact, fitted; as given where none moves."""
     decays, fit = fit_from_contact(
         search.decays, search.structure.linear_models, search.fit, lambda *start: _refit(search, enough, most, *start)
     )
-    return replace(search, decays=decays, fit=fit)
+    return search if fit is search.fit else replace(search, decays=decays, fit=fit)
 
 
 def final_tolerance(search: ModelSearch) -> float:

@@ -126,8 +126,11 @@ def _loses_much(search: ModelSearch, assumption: _Assumption, drops: Sequence[in
 
 
 def _enough_to_tell(search: ModelSearch) -> int:
-    """Return the iterations that tell what the correction gains: where only noise is left, the next step tells enough."""
-    return _FIRST_ITERATIONS if search.is_overdispersed else 0
+    """Return the iterations that tell what the correction gains: where only noise is left, one and what the next promises.
+
+    A step from where the geometry was another one promises less than it gains.
+    """
+    return _FIRST_ITERATIONS if search.is_overdispersed else 1
 
 
 def _promised(fit: FitResult) -> float:

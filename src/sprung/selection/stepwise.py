@@ -13,7 +13,7 @@ from dataclasses import replace
 from sprung.estimation import FitResult, beginning_of
 from sprung.preprocess import FreeDecay
 from sprung.selection.backward_elimination import counterpart_of, leave_out_unneeded
-from sprung.selection.contact import from_contact
+from sprung.selection.contact import from_contact, without_landings
 from sprung.selection.error_budget import MISFIT_LEFT, MISFIT_LEFT_BY_ALL
 from sprung.selection.evident_faults import with_evident_fault
 from sprung.selection.low_pass import confirm_low_pass, select_low_pass
@@ -169,6 +169,8 @@ def select_further_terms(search: ModelSearch, whole: bool) -> ModelSearch:
         if search.structure is before.structure:
             if search.structure is decided or (whole and not search.is_overdispersed):
                 break
+            # What a wheel does that is still in the air would hide what shows in no score.
+            search = without_landings(search)
             untried = _untried(search, tried)
             search = _accept_low_pass(search, _rivals(untried), _hidden(untried))
             if search.structure is before.structure and not search.is_overdispersed:
