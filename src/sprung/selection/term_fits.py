@@ -128,7 +128,13 @@ def take_first_step(search: ModelSearch, term: str) -> tuple[ModelSearch, float]
     """
     if term == ENGINE:
         return search, np.inf
-    first = search.refit(search.with_terms([term]), most=1)
+    larger = search.with_terms([term])
+    if search.structure.is_nonlinear and TERMS[term].vibrates_by_itself:
+        # It begins at a usual size, and the beginnings of the decays show sooner whether that leads anywhere.
+        early = begin_nonlinear_fit(search, larger)
+        if search.is_better_than(early):
+            return replace(search, structure=larger, fit=early), -np.inf
+    first = search.refit(larger, most=1)
     # A motion without bounds, or so far from the records that all of it would have to be found anew.
     is_astray = search.structure.is_nonlinear and search.is_better_than(first.fit)
     if is_astray or not np.isfinite(first.fit.loglikelihood):
