@@ -146,3 +146,12 @@ def test_a_car_from_another_engine_with_a_late_channel_is_accepted() -> None:
     assert outcome.verdict == "accept"
     assert outcome.faults == ("late (wheel_fr)",)
     assert outcome.worst[0] < 0.02
+
+
+@pytest.mark.slow
+def test_a_sensor_that_a_fit_takes_far_from_its_place_is_moved_there() -> None:
+    """The fit bears with a place that is wrong, 28 standard uncertainties off: it was named, and the result doubted."""
+    ((campaign, truth),) = record([draw_test("twist", 0)])
+    outcome = examine(moved(campaign, "body_fl", 0.3), truth, 300.0)
+    assert (outcome.verdict, outcome.model, outcome.faults) == ("accept", ("twist",), ("position (body_fl)",))
+    assert outcome.worst_scaled[0] < 4

@@ -18,6 +18,7 @@ from sprung.faults import (
     Consistency,
     Hypothesis,
     consistency_of,
+    correct_beside_terms,
     decays_without_wheel_sensors,
     isolate,
 )
@@ -31,6 +32,7 @@ from sprung.selection import (
     fit_structure,
     furthest_from_stated,
     needed_terms,
+    sensor_error_of_fit,
 )
 from sprung.vehicle import SensorQuantity
 
@@ -81,7 +83,7 @@ def _restart_without_rival(run: Analysis) -> Analysis:
 def isolate_faults(run: Analysis, progress: Progress) -> Analysis:
     """Correct what explains much of what no model term explains; what is ambiguous is only named."""
     run = _with_isolated(run, _consistency(run), progress)
-    found = run.found
+    found = run.found or _sensor_of_fit(run)
     named = tuple(one.fault for one in found if one.remedy == "named") or (
         () if found else _suspected_sensor(run.model)
     )
@@ -90,6 +92,18 @@ def isolate_faults(run: Analysis, progress: Progress) -> Analysis:
         run = run.noted("isolate_faults", f"suspected {fault.code} of {fault.where}", fault.what)
     corrected = [one for one in found if one.remedy != "named"]
     return restart_corrected(run, corrected, "isolate_faults") if corrected else run
+
+
+def _sensor_of_fit(run: Analysis) -> tuple[Hypothesis, ...]:
+    """Return the one sensor that the fit takes far from what is stated of it, with what corrects that.
+
+    What follows from its own statement alone is no fault of any hypothesis: the fit has allowed for it.
+    """
+    if len(run.corrected) >= MOST_RESTARTS or run.model.has_model_error:
+        return ()
+    error = sensor_error_of_fit(run.model)
+    base = CandidateFit.of(run.model.structure, run.decays, run.fit)
+    return () if error is None else tuple(correct_beside_terms(base, error))
 
 
 def _suspected_sensor(search: ModelSearch) -> tuple[Fault, ...]:

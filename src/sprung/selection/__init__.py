@@ -17,7 +17,7 @@ from sprung.selection.model_term import ModelTerm
 from sprung.selection.nonlinear import select_nonlinear_terms
 from sprung.selection.scoring import WORTH_A_FIT, score_terms
 from sprung.selection.search import ModelSearch, SelectionStep
-from sprung.selection.sensor_errors import FAR, SensorError, furthest_from_stated
+from sprung.selection.sensor_errors import FAR, SensorError, furthest_from_stated, sensor_error_of_fit
 from sprung.selection.starts import fit_structure
 from sprung.selection.stepwise import select_linear_terms, try_term
 from sprung.selection.structure import ModelStructure, choose_structure
@@ -74,6 +74,7 @@ __all__ = [
     "select_low_pass",
     "select_nonlinear_terms",
     "select_roll_axis_height",
+    "sensor_error_of_fit",
     "try_term",
     "with_neutral_terms",
 ]

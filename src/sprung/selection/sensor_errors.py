@@ -39,6 +39,9 @@ _OUTSTANDING = 2.0
 _EXPLAINS = 0.1
 """Part of what noise alone would gain that the sensor gains at least."""
 
+_CORRECTED: frozenset[SensorQuantity] = frozenset({"x", "y", "delay"})
+"""Unknowns that are corrected where a fit that leaves nothing takes them far off."""
+
 FAR = 5.0
 """Standard uncertainties from which a sensor is not what is stated of it."""
 
@@ -78,15 +81,55 @@ def furthest_from_stated(search: ModelSearch) -> tuple[float, str, SensorQuantit
     tuple
         How far, in standard uncertainties with its sign, the channel, and which unknown; 0 where nothing of sensors is unknown.
     """
+    distances = _distances(search)
+    if not distances:
+        return 0.0, "", "gain"
+    channel, quantity = max(distances, key=lambda unknown: abs(distances[unknown]))
+    return distances[channel, quantity], channel, quantity
+
+
+def _distances(search: ModelSearch) -> dict[tuple[str, SensorQuantity], float]:
+    """Return how far a fit takes each unknown of each sensor from what is stated of it, in standard uncertainties."""
     found = search.fit.parameters
-    far: list[tuple[float, str, SensorQuantity]] = [
-        ((found[name] - stated.value) / stated.std, sensor.channel, quantity)
+    return {
+        (sensor.channel, quantity): (found[name] - stated.value) / stated.std
         for sensor in search.structure.sensors
         for quantity in SENSOR_UNKNOWNS
         if (name := sensor_unknown(quantity, sensor.channel)) in found
         and (stated := sensor.uncertainties.get(name)) is not None
-    ]
-    return max(far, key=lambda one: abs(one[0]), default=(0.0, "", "gain"))
+    }
+
+
+def sensor_error_of_fit(search: ModelSearch) -> SensorError | None:
+    """Return the error in place or time of the one sensor that a fit takes far from what is stated of it.
+
+    A gain is not corrected by this: gravity at rest has not contradicted what is stated of it.
+
+    Parameters
+    ----------
+    search
+        A model and its fit, which leaves hardly more than noise.
+
+    Returns
+    -------
+    SensorError or None
+        None where none is far off, or not by much more than another one, or has been corrected before.
+    """
+    _, channel, quantity = furthest_from_stated(search)
+    distances = _distances(search)
+    others = max((abs(ratio) for (other, _), ratio in distances.items() if other != channel), default=0.0)
+    farthest = abs(distances.get((channel, quantity), 0.0))
+    is_corrected = channel in {fault.where for fault in search.structure.campaign.faults}
+    if quantity not in _CORRECTED or farthest < max(FAR, _OUTSTANDING * others) or is_corrected:
+        return None
+    together, statement, _ = _FREE[quantity]
+    sensor = next(one for one in search.structure.sensors if one.channel == channel)
+    found = {
+        one: (search.fit.parameters[name], float(getattr(sensor, statement)))
+        for one in together
+        if (name := sensor_unknown(one, channel)) in search.fit.parameters
+    }
+    return SensorError(channel, found)
 
 
 def find_sensor_error(search: ModelSearch) -> SensorError | None:
