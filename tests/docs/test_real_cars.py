@@ -186,6 +186,18 @@ def test_a_wheel_still_in_the_air_hides_no_rounded_knee(monkeypatch: pytest.Monk
 
 
 @pytest.mark.slow
+def test_what_a_refused_body_that_bends_explained_is_looked_for_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    """People on seats were not tried beside it, nor after it was refused: rejected, and a healthy sensor blamed."""
+    monkeypatch.setattr(real_campaigns, "RATE", 1000.0)
+    monkeypatch.setattr(real_campaigns, "NOISE", 0.05)
+    ((campaign, truth),) = record([replace(draw_test("seats", 628), height=0.08)], 3.0)
+    outcome = examine(campaign, truth, 300.0)
+    assert outcome.verdict != "reject"
+    assert ("occupants" in outcome.model, outcome.faults) == (True, ())
+    assert outcome.worst_scaled[0] < 4
+
+
+@pytest.mark.slow
 def test_what_the_filter_of_all_loggers_still_rings_of_blames_no_sensor() -> None:
     """A filter of order 4 at 100 Hz rings for 15 ms after a landing: a healthy sensor was left out, variances enlarged."""
     test = draw_test("sensors", 36)

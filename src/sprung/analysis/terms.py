@@ -56,8 +56,11 @@ def select_linear_terms(run: Analysis, progress: Progress) -> Analysis:
     if search.fit is not before.fit or not has_flexible_body(run):
         search = select_linear(search, refused=before.refused)
     if search.structure.names != before.structure.names:
-        # The fit has moved since a term was accepted: it may speak against it now.
-        search = leave_out_refused(from_contact(search))
+        # The fit has moved since a term was accepted: it may speak against it now, and what it explained be another one's.
+        moved = from_contact(search)
+        search = leave_out_refused(moved)
+        if search.structure.names != moved.structure.names:
+            search = from_contact(select_linear(search, refused=search.refused))
     return _with_search(run, before, search, "select_linear_terms")
 
 
