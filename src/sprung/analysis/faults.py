@@ -102,8 +102,9 @@ def _sensor_of_fit(run: Analysis) -> tuple[Hypothesis, ...]:
     if len(run.corrected) >= MOST_RESTARTS or run.model.has_model_error:
         return ()
     error = sensor_error_of_fit(run.model)
-    base = CandidateFit.of(run.model.structure, run.decays, run.fit)
-    return () if error is None else tuple(correct_beside_terms(base, error))
+    if error is None:
+        return ()
+    return tuple(correct_beside_terms(CandidateFit.of(run.model.structure, run.decays, run.fit), error))
 
 
 def _suspected_sensor(search: ModelSearch) -> tuple[Fault, ...]:

@@ -6,7 +6,7 @@ from sprung.analysis.analysis import Analysis
 from sprung.estimation import NEAR
 from sprung.faults import CandidateFit, Consistency, largest_expected_gain, largest_gain_by_steps
 from sprung.progress import silent
-from sprung.selection import TERMS, fit_structure, score_terms
+from sprung.selection import TERMS, ModelSearch, fit_structure, score_terms
 
 _MOST = 0.5
 """Share of a misfit that a model term has to explain by a few steps to be fitted before faults are isolated."""
@@ -31,9 +31,7 @@ def explaining_term(run: Analysis, consistency: Consistency) -> tuple[str, str] 
     """
     if consistency == "consistent" or run.model.structure.is_time_stepped:
         return None
-    terms = run.model.open_terms([name for name, term in TERMS.items() if term.is_linear])
-    search, scores = score_terms(run.model, [term for term in terms if term not in run.model.refused])
-    expected = {term: gain / run.fit.disagreement for term, (gain, _) in scores.items()}
+    search, expected = _expected_gains(run.model, linear=True)
     promising = [term for term, gain in expected.items() if gain >= search.required(term)]
     base = CandidateFit.of(run.model.structure, run.decays, run.fit)
     gains: dict[str, float] = {}
@@ -64,9 +62,7 @@ def rivalling_term(run: Analysis) -> tuple[str, str] | None:
     """
     if run.model.structure.is_time_stepped:
         return None
-    terms = run.model.open_terms([name for name, term in TERMS.items() if not term.is_linear])
-    search, scores = score_terms(run.model, terms)
-    expected = {term: gain / run.fit.disagreement for term, (gain, _) in scores.items()}
+    search, expected = _expected_gains(run.model, linear=False)
     best = max(expected, key=expected.__getitem__, default=None)
     if best is None or expected[best] < search.required(best):
         return None
@@ -74,3 +70,13 @@ def rivalling_term(run: Analysis) -> tuple[str, str] | None:
     fault = base.table.cost - run.found[-1].table.cost
     why = f"it is expected to gain {expected[best]:.0f}, the faults {fault:.0f}"
     return (best, why) if expected[best] > fault else None
+
+
+def _expected_gains(model: ModelSearch, *, linear: bool) -> tuple[ModelSearch, dict[str, float]]:
+    """Return by their scores what open terms, linear ones or the others, gain where drops that disagree count less.
+
+    The search has the starts of these terms where they gain most.
+    """
+    terms = model.open_terms([name for name, term in TERMS.items() if term.is_linear is linear])
+    search, scores = score_terms(model, [term for term in terms if term not in model.refused])
+    return search, {term: gain / model.fit.disagreement for term, (gain, _) in scores.items()}

@@ -115,12 +115,11 @@ def sensor_error_of_fit(search: ModelSearch) -> SensorError | None:
     SensorError or None
         None where none is far off, or not by much more than another one, or has been corrected before.
     """
-    _, channel, quantity = furthest_from_stated(search)
-    distances = _distances(search)
-    others = max((abs(ratio) for (other, _), ratio in distances.items() if other != channel), default=0.0)
-    farthest = abs(distances.get((channel, quantity), 0.0))
-    is_corrected = channel in {fault.where for fault in search.structure.campaign.faults}
-    if quantity not in _CORRECTED or farthest < max(FAR, _OUTSTANDING * others) or is_corrected:
+    farthest, channel, quantity = furthest_from_stated(search)
+    if quantity not in _CORRECTED or abs(farthest) < FAR or channel in _at_fault(search):
+        return None
+    others = max((abs(ratio) for (other, _), ratio in _distances(search).items() if other != channel), default=0.0)
+    if abs(farthest) < _OUTSTANDING * others:
         return None
     together, statement, _ = _FREE[quantity]
     sensor = next(one for one in search.structure.sensors if one.channel == channel)
@@ -177,7 +176,7 @@ def find_sensor_error(search: ModelSearch) -> SensorError | None:
 def _scores(search: ModelSearch) -> dict[tuple[str, SensorQuantity], float]:
     """Return by channel and unknown the square of its distance from what is stated, over the variance of that distance."""
     # One that is corrected already has an unknown for what is left.
-    at_fault = {fault.where for fault in search.structure.campaign.faults}
+    at_fault = _at_fault(search)
     sensors = {one.channel: one for one in search.structure.sensors if one.channel not in at_fault}
     scored = search.refit(_with_stated(search.structure, _STATED), 0, beginning_only=True)
     quantities = {
@@ -188,6 +187,11 @@ def _scores(search: ModelSearch) -> dict[tuple[str, SensorQuantity], float]:
     }
     lifted = lift_priors(scored.fit, [name for name in scored.fit.names if name in quantities])
     return {quantities[name]: (distance / std) ** 2 for name, (distance, std, _) in lifted.items()}
+
+
+def _at_fault(search: ModelSearch) -> set[str]:
+    """Return where faults were found and corrected before."""
+    return {fault.where for fault in search.structure.campaign.faults}
 
 
 def _shows_gain(search: ModelSearch, sensor: Sensor) -> bool:
