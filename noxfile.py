@@ -133,6 +133,7 @@ def studies(session: nox.Session) -> None:
         "modal",
         "real_cars",
         "real_car_faults",
+        "real_car_tests",
         "fleets",
     ):
         session.run("python", f"docs/studies/{study}.py", *(session.posargs or ("--processes", "2")))

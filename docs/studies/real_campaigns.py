@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from real_kinds import DURATION, FIVE, LATER, NOISE, RATE, RELEASE, WEIGHING, RealTest
+from real_kinds import FIVE, LATER, RELEASE, RealTest
 from real_motion import Motion, Row, follow
 from real_rotations import follow_turning
 from real_sensors import recorded
@@ -76,34 +76,35 @@ def rows_of(test: RealTest) -> list[Row]:
     return rows
 
 
-def record(tests: Sequence[RealTest], duration: float = DURATION) -> list[tuple[sprung.Campaign, Truth]]:
-    """Record campaigns and read them; arguments as for `simulate_recordings`."""
-    return [(campaign_of(truth.test, values), truth) for values, truth in simulate_recordings(tests, duration)]
+def record(tests: Sequence[RealTest]) -> list[tuple[sprung.Campaign, Truth]]:
+    """Record campaigns and read them."""
+    return [(campaign_of(truth.test, values), truth) for values, truth in simulate_recordings(tests)]
 
 
-def simulate_recordings(tests: Sequence[RealTest], duration: float = DURATION) -> list[tuple[list[Real], Truth]]:
-    """Return the recordings of campaigns, each (channel, time), m/s²; drops with small angles are followed at once.
+def simulate_recordings(tests: Sequence[RealTest]) -> list[tuple[list[Real], Truth]]:
+    """Return the recordings of campaigns, each (channel, time), m/s²."""
+    motions = _motions(tests)
+    return [(_recordings(test, motion), _truth(test, motion)) for test, motion in zip(tests, motions, strict=True)]
 
-    Parameters
-    ----------
-    tests
-        What is recorded.
-    duration
-        Of each recording, s.
-    """
-    rows = [rows_of(test) for test in tests]
-    turning = [test.cg_height is not None for test in tests]
-    small = [row for mine, turns in zip(rows, turning, strict=True) if not turns for row in mine]
-    all_small = follow(small, RATE, duration) if small else None
-    first, found = 0, []
-    for test, mine in zip(tests, rows, strict=True):
+
+def _motions(tests: Sequence[RealTest]) -> list[Motion]:
+    """Return the motion of each test; drops with small angles that are sampled alike are followed at once."""
+    small: dict[tuple[float, float], list[Row]] = {}
+    for test in tests:
+        if test.cg_height is None:
+            small.setdefault((test.rate, test.duration), []).extend(rows_of(test))
+    followed = {sampling: follow(rows, *sampling) for sampling, rows in small.items()}
+    first = dict.fromkeys(followed, 0)
+    found = []
+    for test in tests:
+        sampling = test.rate, test.duration
         if test.cg_height is not None and test.wheel_height is not None:
-            motion = follow_turning(mine, test.sensors, test.cg_height, test.wheel_height, RATE, duration)
+            heights = test.cg_height, test.wheel_height
+            found.append(follow_turning(rows_of(test), test.sensors, *heights, *sampling))
         else:
-            assert all_small is not None  # noqa: S101 (this test is one of those that were followed)
-            motion = all_small.of_rows(slice(first, first + len(mine)))
-            first += len(mine)
-        found.append((_recordings(test, mine, motion), _truth(test, motion)))
+            last = first[sampling] + len(test.drops)
+            found.append(followed[sampling].of_rows(slice(first[sampling], last)))
+            first[sampling] = last
     return found
 
 
@@ -117,7 +118,7 @@ def _truth(test: RealTest, motion: Motion) -> Truth:
     return Truth(test, tuple(one * motion.step for one in last), fastest)
 
 
-def _recordings(test: RealTest, rows: Sequence[Row], motion: Motion) -> list[Real]:
+def _recordings(test: RealTest, motion: Motion) -> list[Real]:
     random = np.random.default_rng([test.own_seed, 1])
     return [
         recorded(
@@ -125,14 +126,14 @@ def _recordings(test: RealTest, rows: Sequence[Row], motion: Motion) -> list[Rea
             test.sensors,
             motion,
             i,
-            rate=RATE,
-            noise=NOISE,
+            rate=test.rate,
+            noise=test.noise,
             random=random,
             filtered=test.filtered,
             cg_height=_cg_height(test),
             slaps=test.slaps,
         )
-        for i, row in enumerate(rows)
+        for i, row in enumerate(rows_of(test))
     ]
 
 
@@ -141,7 +142,7 @@ def _cg_height(test: RealTest) -> float:
 
 
 def campaign_of(test: RealTest, recordings: Sequence[Real]) -> sprung.Campaign:
-    """Return the campaign of a test; the axles are weighed with an error.
+    """Return the campaign of a test; the axles are weighed with an error, if at all.
 
     Parameters
     ----------
@@ -150,8 +151,6 @@ def campaign_of(test: RealTest, recordings: Sequence[Real]) -> sprung.Campaign:
     recordings
         Of each drop, (channel, time), m/s².
     """
-    errors = WEIGHING * np.random.default_rng([test.own_seed, 2]).standard_normal(2)
-    axles = zip(("front", "rear"), np.array(test.car.axle_masses) + errors, strict=True)
     height = round(_cg_height(test), 2)
     items = tuple(Item(mass=one.mass, position=(one.x, one.y, height), inertia=one.inertia) for one in test.items)
     channels = tuple(one.channel for one in test.sensors)
@@ -160,7 +159,9 @@ def campaign_of(test: RealTest, recordings: Sequence[Real]) -> sprung.Campaign:
         load = LOADED if loaded else EMPTY
         label = f"{load}_{_LABELS[FIVE.index(wheels)] if wheels in FIVE else '_'.join(wheels)}"
         drop = Drop(file=f"{label}.csv", load=load, wheels=wheels, height=test.height)
-        drops.append(drop.with_recording(Recording(name=label, channels=channels, values=values, start=0.0, rate=RATE)))
+        drops.append(
+            drop.with_recording(Recording(name=label, channels=channels, values=values, start=0.0, rate=test.rate))
+        )
     return sprung.Campaign(
         name=f"{test.kind} {test.seed}",
         sensors=tuple(
@@ -170,5 +171,13 @@ def campaign_of(test: RealTest, recordings: Sequence[Real]) -> sprung.Campaign:
         drops=tuple(drops),
         loads=(Load(name=EMPTY), Load(name=LOADED, items=items)),
         wheelbase=KnownValue(test.car.wheelbase),
-        known={f"{axle}_axle_mass": KnownValue(float(mass), WEIGHING) for axle, mass in axles},
+        known=_weighed(test),
     )
+
+
+def _weighed(test: RealTest) -> dict[str, KnownValue]:
+    if test.weighing is None:
+        return {}
+    errors = test.weighing * np.random.default_rng([test.own_seed, 2]).standard_normal(2)
+    axles = zip(("front", "rear"), np.array(test.car.axle_masses) + errors, strict=True)
+    return {f"{axle}_axle_mass": KnownValue(float(mass), test.weighing) for axle, mass in axles}

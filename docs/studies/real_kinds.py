@@ -88,6 +88,10 @@ class RealTest:
         Whether each is loaded, and its wheels.
     height
         Of the blocks, m.
+    rate, duration, noise
+        Samples per second, s of each recording, and m/s² root-mean-square.
+    weighing
+        Standard uncertainty of each axle's mass, kg; None where nothing is weighed.
     filtered
         Whether the loggers have a low-pass filter.
     other
@@ -105,6 +109,10 @@ class RealTest:
     items: tuple[BallastItem, ...]
     drops: tuple[tuple[bool, tuple[Station, ...]], ...]
     height: float = 0.05
+    rate: float = RATE
+    duration: float = DURATION
+    noise: float = NOISE
+    weighing: float | None = WEIGHING
     filtered: bool = False
     other: RealCar | None = None
     slaps: str | None = None

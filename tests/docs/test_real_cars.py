@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-import real_campaigns
 from real_campaigns import record
 from real_kinds import KINDS, NO_VEHICLE, Draw, add_knee, add_tyre, draw_test
 from real_motion import BallastItem, Motion, Row, Rows, follow
@@ -116,7 +115,7 @@ def test_small_rotations_are_those_of_the_plane_equations() -> None:
 def test_a_campaign_of_every_kind() -> None:
     tests = [draw_test(kind, 5) for kind in (*KINDS, *NO_VEHICLE)]
     short = [replace(one, drops=one.drops[1:2]) for one in tests]
-    for test, (campaign, truth) in zip(short, record(short, 0.8), strict=True):
+    for test, (campaign, truth) in zip(short, record([replace(one, duration=0.8) for one in short]), strict=True):
         assert campaign.name == f"{test.kind} 5"
         assert len(campaign.drops) == 1
         values = campaign.recordings[0].values
@@ -129,7 +128,7 @@ def test_a_campaign_of_every_kind() -> None:
 
 
 def test_what_fails_is_an_outcome() -> None:
-    ((campaign, truth),) = record([replace(draw_test("plain", 0), drops=draw_test("plain", 0).drops[:1])], 1.2)
+    ((campaign, truth),) = record([replace(draw_test("plain", 0), drops=draw_test("plain", 0).drops[:1], duration=1.2)])
     failed = examine(campaign, truth, 30.0, extras=["no such term"])
     assert isinstance(failed, Outcome)
     assert failed.verdict == "failed"
@@ -139,11 +138,10 @@ def test_what_fails_is_an_outcome() -> None:
 
 
 @pytest.mark.slow
-def test_a_tall_car_is_identified_whose_body_turns_by_finite_angles(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_tall_car_is_identified_whose_body_turns_by_finite_angles() -> None:
     """To second order in the angles the roll inertia was 1 % off, the rear anti-roll bar 0.5 %."""
-    monkeypatch.setattr(real_campaigns, "NOISE", 1e-3)
     test = draw_test("tall", 1)
-    ((campaign, truth),) = record([test])
+    ((campaign, truth),) = record([replace(test, noise=1e-3)])
     assert (test.cg_height or 0.0) > 0.75
     known = replace(campaign, cg_height=test.cg_height, wheel_height=test.wheel_height)
     result = sprung.identify(known, extras=("anti-roll",))
@@ -151,10 +149,9 @@ def test_a_tall_car_is_identified_whose_body_turns_by_finite_angles(monkeypatch:
         assert result.parameters[name].value == pytest.approx(value, rel=2e-3), name
 
 
-def test_finite_rotation_shows_beside_noise(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_finite_rotation_shows_beside_noise() -> None:
     """It gains 185 and one Newton step from the other geometry promised a loss: the pitch inertia was 3.1 errors off."""
-    monkeypatch.setattr(real_campaigns, "NOISE", 0.1)
-    ((campaign, truth),) = record([draw_test("tall", 511)], 2.0)
+    ((campaign, truth),) = record([replace(draw_test("tall", 511), noise=0.1, duration=2.0)])
     result = sprung.identify(campaign, extras=("anti-roll", "gravity"), fall=False)
     assert any(step.stage == "select_finite_rotation" for step in result.trace)
     for name, value in truth.parameters.items():
@@ -165,32 +162,28 @@ def test_finite_rotation_shows_beside_noise(monkeypatch: pytest.MonkeyPatch) -> 
 
 
 @pytest.mark.long
-def test_tyres_that_stiffen_a_little_beside_much_noise_are_no_wrong_clock(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_tyres_that_stiffen_a_little_beside_much_noise_are_no_wrong_clock() -> None:
     """The drop that compresses them most seemed to have a clock that runs 0.7 % too fast, and was left out."""
-    monkeypatch.setattr(real_campaigns, "RATE", 400.0)
-    monkeypatch.setattr(real_campaigns, "NOISE", 0.1)
-    ((campaign, truth),) = record([replace(draw_test("tyre", 516), height=0.03)], 8.0)
+    ((campaign, truth),) = record([replace(draw_test("tyre", 516), height=0.03, rate=400.0, noise=0.1, duration=8.0)])
     outcome = examine(campaign, truth, 300.0)
     assert (outcome.verdict, {*outcome.model}, outcome.faults) == ("accept", {"tyre-damping", "tyre-curve"}, ())
 
 
 @pytest.mark.long
-def test_a_wheel_still_in_the_air_hides_no_rounded_knee(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_wheel_still_in_the_air_hides_no_rounded_knee() -> None:
     """One sample of one wheel left as much as all the rest: knees of dampers were 13 standard errors off, and accepted."""
-    monkeypatch.setattr(real_campaigns, "RATE", 250.0)
-    monkeypatch.setattr(real_campaigns, "NOISE", 0.05)
-    ((campaign, truth),) = record([replace(draw_test("knee", 501), height=0.03)], 3.0)
+    ((campaign, truth),) = record([replace(draw_test("knee", 501), height=0.03, rate=250.0, noise=0.05, duration=3.0)])
     outcome = examine(campaign, truth, 300.0)
     assert (outcome.verdict, outcome.model) == ("accept", ("rebound", "damper-curve", "rounded-knee"))
     assert outcome.worst_scaled[0] < 4
 
 
 @pytest.mark.slow
-def test_what_a_refused_body_that_bends_explained_is_looked_for_again(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_a_refused_body_that_bends_explained_is_looked_for_again() -> None:
     """People on seats were not tried beside it, nor after it was refused: rejected, and a healthy sensor blamed."""
-    monkeypatch.setattr(real_campaigns, "RATE", 1000.0)
-    monkeypatch.setattr(real_campaigns, "NOISE", 0.05)
-    ((campaign, truth),) = record([replace(draw_test("seats", 628), height=0.08)], 3.0)
+    ((campaign, truth),) = record(
+        [replace(draw_test("seats", 628), height=0.08, rate=1000.0, noise=0.05, duration=3.0)]
+    )
     outcome = examine(campaign, truth, 300.0)
     assert outcome.verdict != "reject"
     assert ("occupants" in outcome.model, outcome.faults) == (True, ())
@@ -257,13 +250,11 @@ def test_a_part_that_made_up_for_finite_rotation_is_not_subtracted_from_the_reco
 
 
 @pytest.mark.long
-def test_the_samples_that_a_poorer_model_gives_up_show_what_it_lacks(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_samples_that_a_poorer_model_gives_up_show_what_it_lacks() -> None:
     """To a body that bends on tyres that do not damp wheels seem to hop for long: the rest accepted a wheel 11 errors off."""
-    monkeypatch.setattr(real_campaigns, "NOISE", 0.03)
-    monkeypatch.setattr(real_campaigns, "RATE", 400.0)
     test = draw_test("bending", 0)
     stiffening = replace(test, car=add_tyre(test.car, Draw("tyre", 0)), height=0.07)
-    ((campaign, truth),) = record([stiffening], 3.0)
+    ((campaign, truth),) = record([replace(stiffening, noise=0.03, rate=400.0, duration=3.0)])
     outcome = examine(campaign, truth, 300.0)
     assert (outcome.verdict, {*outcome.model}, outcome.faults) == (
         "accept",
@@ -274,12 +265,12 @@ def test_the_samples_that_a_poorer_model_gives_up_show_what_it_lacks(monkeypatch
 
 
 @pytest.mark.long
-def test_laws_of_the_same_springs_are_compared(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_laws_of_the_same_springs_are_compared() -> None:
     """Air springs were taken for progressive ones with bump stops: at up to 5.6 standard errors."""
-    monkeypatch.setattr(real_campaigns, "RATE", 1000.0)
-    monkeypatch.setattr(real_campaigns, "NOISE", 0.07)
     test = draw_test("air", 3)
-    ((campaign, truth),) = record([replace(test, car=add_knee(test.car, Draw("knee", 3)), height=0.03)])
+    ((campaign, truth),) = record(
+        [replace(test, car=add_knee(test.car, Draw("knee", 3)), height=0.03, rate=1000.0, noise=0.07)]
+    )
     outcome = examine(campaign, truth, 300.0)
     assert (outcome.verdict, outcome.faults) == ("accept", ())
     assert "air" in outcome.model

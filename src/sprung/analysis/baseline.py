@@ -23,7 +23,9 @@ from sprung.selection import (
     fit_requested_terms,
     fit_structure,
     from_contact,
+    is_ordinary,
     needed_terms,
+    or_from_ordinary_vehicle,
     select_roll_axis_height,
 )
 
@@ -38,7 +40,10 @@ def fit_baseline(run: Analysis, progress: Progress) -> Analysis:
         run = _fit_corrected(run, structure, progress)
     else:
         fit = fit_baseline_model(run, structure, run.prepared.decays, progress)
-        search = select_roll_axis_height(ModelSearch(structure, fit, run.prepared.decays, (), progress))
+        search = ModelSearch(structure, fit, run.prepared.decays, (), progress)
+        if not (is_ordinary(search) or run.options.start):
+            search = or_from_ordinary_vehicle(search)
+        search = select_roll_axis_height(search)
         search = fit_requested_terms(search, [term for term in requested.linear_terms if term not in structure.terms])
         last = _best_start(run, from_contact(search), progress)
         is_moved = any(decay.start != before.start for decay, before in zip(last.decays, search.decays, strict=True))

@@ -10,7 +10,7 @@ from sprung.analysis.baseline import converged
 from sprung.analysis.correcting import restart_corrected
 from sprung.analysis.first_term import explaining_term, rivalling_term
 from sprung.analysis.settling import settle_corrections
-from sprung.analysis.terms import select_finite_rotation
+from sprung.analysis.terms import flexible_body_given_up, select_finite_rotation
 from sprung.errors import Fault
 from sprung.estimation import NEAR, FitResult
 from sprung.faults import (
@@ -69,15 +69,23 @@ def isolate_evident_faults(run: Analysis, progress: Progress) -> Analysis:
     turned = select_finite_rotation(run, progress)
     if turned.fit is not run.fit:
         run = _with_isolated(turned, _consistency(turned), progress)
-    return _restart_without_rival(run) if _is_evident(run.found) else run
+    return _restart_without_rival(run, progress) if _is_evident(run.found) else run
 
 
-def _restart_without_rival(run: Analysis) -> Analysis:
-    """Correct evident faults and start again, unless a nonlinear term may explain more: it is tried first."""
-    rival = rivalling_term(run)
+def _restart_without_rival(run: Analysis, progress: Progress) -> Analysis:
+    """Correct evident faults and start again, unless a model term may explain more: it is tried first."""
+    rival = rivalling_term(run) or _body_given_up(run, progress)
     if rival is not None:
         return run.noted("isolate_evident_faults", f"{rival[0]} is tried before anything is corrected", rival[1])
     return restart_corrected(run, run.found, "isolate_evident_faults")
+
+
+def _body_given_up(run: Analysis, progress: Progress) -> tuple[str, str] | None:
+    """Return the flexible body that explains samples which a rigid one gave up, and why it is tried; None where none does."""
+    search = replace(run.model, progress=progress)
+    found = flexible_body_given_up(run, search)
+    bodies = [term for term in found.structure.terms if term not in search.structure.terms]
+    return (bodies[0], "it explains samples that a rigid body gave up") if bodies else None
 
 
 def isolate_faults(run: Analysis, progress: Progress) -> Analysis:

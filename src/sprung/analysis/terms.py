@@ -12,6 +12,7 @@ from sprung.analysis.on_pads import NOT_STEPPED, has_pads
 from sprung.faults import CandidateFit, consistency_of, correct_beside_terms
 from sprung.progress import Progress
 from sprung.selection import (
+    FLEXIBLE_BODIES,
     TERMS,
     ModelSearch,
     SelectionStep,
@@ -19,10 +20,12 @@ from sprung.selection import (
     corner_of,
     fit_forced_terms,
     from_contact,
+    is_likelier,
     leave_out_refused,
     leave_out_unneeded,
     select_flexible_body,
     try_term,
+    with_short_steps,
 )
 from sprung.selection import select_finite_rotation as select_rotation
 from sprung.selection import select_linear_terms as select_linear
@@ -52,9 +55,7 @@ def select_first_term(run: Analysis, progress: Progress) -> Analysis:
 def select_linear_terms(run: Analysis, progress: Progress) -> Analysis:
     """Select the terms that the matrices M, C and K hold."""
     before = run.model
-    search = select_flexible_body(replace(before, progress=progress))
-    if search.fit is not before.fit or not has_flexible_body(run):
-        search = select_linear(search, refused=before.refused)
+    search = _rigid_or_flexible(run, replace(before, progress=progress))
     if search.structure.names != before.structure.names:
         # The fit has moved since a term was accepted: it may speak against it now, and what it explained be another one's.
         moved = from_contact(search)
@@ -62,6 +63,42 @@ def select_linear_terms(run: Analysis, progress: Progress) -> Analysis:
         if search.structure.names != moved.structure.names:
             search = from_contact(select_linear(search, refused=search.refused))
     return _with_search(run, before, search, "select_linear_terms")
+
+
+def _rigid_or_flexible(run: Analysis, before: ModelSearch) -> ModelSearch:
+    """Select terms beside a flexible body if there is one; beside a rigid one, too, if another term than that explains most."""
+    search = _with_flexible_body(run, before)
+    has_body = search.structure.names != before.structure.names
+    if search.fit is not before.fit or not has_flexible_body(run):
+        search = select_linear(search, refused=before.refused)
+    if not has_body or run.first_term in (None, *FLEXIBLE_BODIES):
+        return search
+    # By its first steps it does: a flexible body takes up a part of that.
+    rigid = select_linear(replace(before, steps=search.steps), refused=before.refused)
+    return rigid if is_likelier(rigid, search) else replace(search, steps=rigid.steps)
+
+
+def _with_flexible_body(run: Analysis, search: ModelSearch) -> ModelSearch:
+    """Return the search with a body that twists or bends, if it explains what a rigid one leaves or gave up."""
+    found = select_flexible_body(search)
+    return found if found is not search or not search.is_overdispersed else flexible_body_given_up(run, search)
+
+
+def flexible_body_given_up(run: Analysis, search: ModelSearch) -> ModelSearch:
+    """Return the search with a flexible body that explains samples which a rigid one gave up, or as given.
+
+    To a rigid body that has to explain a flexible one wheels seem to hop until the vibration of this one has decayed.
+
+    Parameters
+    ----------
+    run
+        With its decays as they were prepared.
+    search
+        Of decays that begin later.
+    """
+    early = begin_no_later(search, run.prepared.decays)
+    found = select_flexible_body(early)
+    return search if found.structure.names == early.structure.names else found
 
 
 def select_finite_rotation(run: Analysis, progress: Progress) -> Analysis:
@@ -108,6 +145,7 @@ def select_nonlinear_terms(run: Analysis, progress: Progress) -> Analysis:
         needed, _ = leave_out_unneeded(last, run.model)
         # Where a wheel last touched, a model with more than the vehicle has did not know.
         search = last if needed is last else from_contact(search.refit_as(needed))
+        search = with_short_steps(search)
     run = _with_search(run, run.model, search, "select_nonlinear_terms")
     if search.structure.low_pass is None:
         return run

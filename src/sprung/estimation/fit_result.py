@@ -132,6 +132,16 @@ class FitResult:
         """What one more Newton step is expected to gain in twice the log-likelihood; nearly 0 at an optimum."""
         return self.problem.normal_equations(self.iterate).step()[1]
 
+    @cached_property
+    def expected_shift(self) -> float:
+        """How far a Newton step would take the parameter that it takes furthest, in standard errors."""
+        equations = self.problem.normal_equations(self.iterate)
+        along = equations.directions @ np.linalg.inv(equations.information)
+        variance, step = np.einsum("ud,ud->u", along, equations.directions), along @ equations.gradient
+        return float(
+            np.max(np.divide(step**2, variance, out=np.zeros(len(step)), where=variance > 0), initial=0.0) ** 0.5
+        )
+
     @property
     def absolute_loglikelihood(self) -> float:
         """Natural logarithm of the likelihood, with its constant: -½ Σ (ln 2πσ² + r²/σ²), and the priors."""

@@ -60,6 +60,7 @@ def fit_nonlinear(
     tilting: bool = False,
     low_pass: LowPass | None = None,
     usual: Mapping[str, UsualValue] = MappingProxyType({}),
+    step_part: float = 1.0,
     progress: Progress = silent,
 ) -> FitResult:
     """Fit one vehicle with nonlinear forces to all decays by maximum likelihood.
@@ -93,6 +94,8 @@ def fit_nonlinear(
         Of the loggers, which all channels passed; None for none. Its corner is an unknown of the fit.
     usual
         Usual values of parameters, as weak priors.
+    step_part
+        Part of the usual length of a step in time that is taken.
     progress
         Called with each step that begins.
 
@@ -104,7 +107,7 @@ def fit_nonlinear(
     progress(Step(f"fitting with {laws}, step by step through all drops"))
     known = _statements(known, sensors, models, low_pass)
     steps, values = 0, expected_nuisances(known) | dict(start)
-    fine = _longest_step(models, values)
+    fine = step_part * _longest_step(models, values)
     beginnings = [beginning_of(decay) for decay in decays]
     # What a low-pass makes of a friction that turns round depends on when it does: its corner is found by fits to beginnings.
     stages = (

@@ -6,7 +6,7 @@ from sprung.selection.backward_elimination import (
     leave_out_unneeded,
     needed_terms,
 )
-from sprung.selection.contact import begin_no_later, final_tolerance, from_contact
+from sprung.selection.contact import begin_no_later, final_tolerance, from_contact, is_likelier
 from sprung.selection.description import TermDescription, describe_terms
 from sprung.selection.error_budget import FALSE_ALARM_SHARE, required_gain
 from sprung.selection.finite_rotation import select_finite_rotation
@@ -15,10 +15,12 @@ from sprung.selection.linear_terms import ENGINE, FLEXIBLE_BODIES, SEPARATE_TRAC
 from sprung.selection.low_pass import confirm_low_pass, corner_of, select_low_pass
 from sprung.selection.model_term import ModelTerm
 from sprung.selection.nonlinear import select_nonlinear_terms
+from sprung.selection.ordinary_vehicle import is_ordinary, or_from_ordinary_vehicle
 from sprung.selection.scoring import WORTH_A_FIT, score_terms
 from sprung.selection.search import ModelSearch, SelectionStep
 from sprung.selection.sensor_errors import FAR, SensorError, furthest_from_stated, sensor_error_of_fit
 from sprung.selection.starts import fit_structure
+from sprung.selection.step_length import with_short_steps
 from sprung.selection.stepwise import select_linear_terms, try_term
 from sprung.selection.structure import ModelStructure, choose_structure
 from sprung.selection.term_fits import (
@@ -61,10 +63,13 @@ __all__ = [
     "fit_term",
     "from_contact",
     "furthest_from_stated",
+    "is_likelier",
+    "is_ordinary",
     "leave_out_refused",
     "leave_out_undetermined",
     "leave_out_unneeded",
     "needed_terms",
+    "or_from_ordinary_vehicle",
     "required_gain",
     "score_terms",
     "select_finite_rotation",
@@ -77,4 +82,5 @@ __all__ = [
     "sensor_error_of_fit",
     "try_term",
     "with_neutral_terms",
+    "with_short_steps",
 ]

@@ -15,10 +15,13 @@ from numpy.typing import NDArray
 
 from sprung.estimation import NEAR, FitResult
 from sprung.preprocess import FreeDecay
+from sprung.selection.linear_terms import GRAVITY
+from sprung.selection.ordinary_vehicle import is_ordinary
 from sprung.selection.search import ModelSearch
 from sprung.selection.starts import fit_structure, start_values, thinned
 from sprung.selection.stepwise import select_linear_terms
 from sprung.selection.structure import ModelStructure
+from sprung.selection.term_fits import fit_term
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import EMPTY, FULL, Heights, body_sinking, coordinates, finite_rotation_readings
 
@@ -65,13 +68,30 @@ def select_finite_rotation(search: ModelSearch, plain: ModelStructure) -> ModelS
     -------
     ModelSearch
     """
+    found = _select(search, plain)
+    if not found.is_overdispersed or GRAVITY not in search.open_terms([GRAVITY]):
+        return found
+    # How high the body turns above its wheels shows in what gravity does to it. Where drops hardly roll, neither explains
+    # much without the other.
+    high = fit_term(search, GRAVITY)
+    gain = high.gain_over(search)
+    if not high.fit.converged or gain < search.required(GRAVITY) or high.veto(GRAVITY):
+        return found
+    high = high.recorded({GRAVITY: gain}, True, True)
+    other = _select(high, plain)
+    return other if other is not high and other.gain_over(found) > search.required(GRAVITY) else found
+
+
+def _select(search: ModelSearch, plain: ModelStructure) -> ModelSearch:
+    """Return the search with the effects of finite rotation, if the recordings support them beside its terms."""
     structure = search.structure
     is_held = structure.campaign.heights.roll_axis_height is not None
     # It is that of a body that pitches and rolls.
     if structure.layout != FULL or structure.is_time_stepped or is_held or any(decay.clocks for decay in search.decays):
         return search
-    # Angles are small: what is large is something else, a fault perhaps, which would be taken for it.
-    if search.is_misfit_large:
+    # Angles are small: what is large is something else, a fault perhaps, which would be taken for it. And a vehicle that nobody
+    # would recognise, in drops that hardly roll above all, has no geometry that tells anything.
+    if search.is_misfit_large or not is_ordinary(search):
         return search
     recorded = search.decays
     plainest, *others = _ASSUMPTIONS[:2] if structure.campaign.heights.has_effect else _ASSUMPTIONS

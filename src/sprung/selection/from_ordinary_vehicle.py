@@ -46,7 +46,7 @@ def select_flexible_body(search: ModelSearch) -> ModelSearch:
         Model and fit as given where neither explains it.
     """
     # A fit to little but what the body itself does may leave little, by a vehicle that nobody has seen.
-    is_astray = search.lacks_something and not is_ordinary(search)
+    is_astray = search.is_overdispersed and not is_ordinary(search)
     if not search.is_misfit_large and not is_astray:
         return search
     # Where rubber is missing as well, a flexible body explains a part of the misfit alone.

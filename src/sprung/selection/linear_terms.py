@@ -22,7 +22,7 @@ from sprung.vehicle import layout_of, parameter_name
 SEPARATE_TRACKS = "tracks apart"
 """Springs and dampers at half-distances of their own."""
 
-ENGINE, OCCUPANTS, TWIST, BENDING = "engine", "occupants", "twist", "bending"
+GRAVITY, ENGINE, OCCUPANTS, TWIST, BENDING = "gravity", "engine", "occupants", "twist", "bending"
 """Terms with starts of their own: masses on springs, and a body that is not one rigid mass."""
 
 DAMPER_MOUNT = "damper-mount"
@@ -175,7 +175,7 @@ LINEAR_TERMS = (
         ),
     ),
     ModelTerm(
-        "gravity",
+        GRAVITY,
         _gravity,
         typical=0.1,
         spread=2.0,

@@ -173,7 +173,12 @@ def _with_refused_parts(search: ModelSearch) -> list[ModelSearch]:
     flexible = [term for term in FLEXIBLE_BODIES if term in parts]
     found = fit_flexible_bodies(search, flexible)
     found |= {term: fit_term(search, term) for term in parts if term not in flexible}
-    return [base for term, base in found.items() if not TERMS[term].is_something_else(base.fit.parameters)]
+    # One that explains less than no part does ended astray.
+    return [
+        base
+        for term, base in found.items()
+        if base.gain_over(search) > 0 and not TERMS[term].is_something_else(base.fit.parameters)
+    ]
 
 
 def _from_likeliest_beginning(bases: Sequence[ModelSearch], terms: Sequence[str], so_far: ModelSearch) -> ModelSearch:

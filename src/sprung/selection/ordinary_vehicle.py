@@ -174,6 +174,21 @@ def fit_from_ordinary_vehicle(search: ModelSearch, structure: ModelStructure) ->
     return replace(search, structure=structure, fit=fit.after(search.fit))
 
 
+def or_from_ordinary_vehicle(search: ModelSearch) -> ModelSearch:
+    """Return the search, or its model as fitted from an ordinary vehicle where that explains more.
+
+    A model that lacks something may have led the one with a further term to another optimum; and where drops hardly show roll,
+    wheels may seem to be nowhere.
+
+    Parameters
+    ----------
+    search
+        A linear model and its fit.
+    """
+    other = fit_from_ordinary_vehicle(search, search.structure)
+    return other if other.fit.converged and other.gain_over(search) > search.required_of_switch else search
+
+
 def fit_usual_terms(search: ModelSearch, rich: ModelStructure) -> ModelSearch | None:
     """Fit a structure from an ordinary vehicle whose terms have their usual sizes, to the beginnings of the decays.
 

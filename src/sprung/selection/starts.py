@@ -163,6 +163,7 @@ def fit_structure(
         tilting=structure.gravity_leakage,
         low_pass=structure.low_pass,
         usual=structure.usual,
+        step_part=structure.step_part,
         progress=progress,
     )
     return fitted.after(before)

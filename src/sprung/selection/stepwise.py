@@ -17,7 +17,7 @@ from sprung.selection.contact import from_contact, without_landings
 from sprung.selection.error_budget import MISFIT_LEFT, MISFIT_LEFT_BY_ALL
 from sprung.selection.evident_faults import with_evident_fault
 from sprung.selection.low_pass import confirm_low_pass, select_low_pass
-from sprung.selection.ordinary_vehicle import fit_from_ordinary_vehicle
+from sprung.selection.ordinary_vehicle import or_from_ordinary_vehicle
 from sprung.selection.scoring import WORTH_A_FIT, Scores, score_terms
 from sprung.selection.search import ModelSearch
 from sprung.selection.term_fits import (
@@ -82,18 +82,9 @@ def select_linear_terms(
             break
         if search.is_overdispersed and len(among) == len(_LINEAR):
             # The model before did not show where a wheel last touched: samples before that would accept any further term.
-            search = from_contact(_or_from_ordinary_vehicle(search))
+            search = from_contact(or_from_ordinary_vehicle(search))
         refused = ()
     return search
-
-
-def _or_from_ordinary_vehicle(search: ModelSearch) -> ModelSearch:
-    """Return the search, or its model as fitted from an ordinary vehicle where that explains more.
-
-    A model that lacks something may have led the one with a further term to another optimum.
-    """
-    other = fit_from_ordinary_vehicle(search, search.structure)
-    return other if other.fit.converged and other.gain_over(search) > search.required_of_switch else search
 
 
 def select_terms_beside(search: ModelSearch) -> ModelSearch:

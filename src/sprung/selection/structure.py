@@ -80,6 +80,8 @@ class ModelStructure:
         Where the body is carried sideways, where two heights are known at which it may be.
     usual
         Usual values of parameters, which are weak priors.
+    step_part
+        Part of the usual length of steps in time that its fits take.
     assumed_heights
         Heights where the campaign does not state enough of them, as far as the recordings show them; None for no effect.
     sinking
@@ -103,6 +105,7 @@ class ModelStructure:
     seat_place: float = 0.45
     carried_at: CarriedAt = "wheels"
     usual: Mapping[str, UsualValue] = field(default_factory=dict)
+    step_part: float = 1.0
     assumed_heights: Heights | None = None
     sinking: Mapping[str, float] = field(default_factory=dict)
 
