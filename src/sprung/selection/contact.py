@@ -109,6 +109,10 @@ def is_likelier(search: ModelSearch, other: ModelSearch) -> bool:
     search, other
         Of the same drops. Where their decays begin at different samples, the later ones count: in those before, one of the
         models has a wheel off the ground.
+
+    Returns
+    -------
+    bool
     """
     if search.decays is not other.decays:
         starts = [max(decay.start, another.start) for decay, another in zip(search.decays, other.decays, strict=True)]

@@ -89,6 +89,10 @@ def is_ordinary(search: ModelSearch) -> bool:
     ----------
     search
         The present model and its fit.
+
+    Returns
+    -------
+    bool
     """
     _, usual = ordinary_vehicle(search.structure.with_terms(()))
     values = {name: max(search.fit.parameters[name], 0.0) for name in usual if name in search.fit.parameters}
@@ -184,6 +188,11 @@ def or_from_ordinary_vehicle(search: ModelSearch) -> ModelSearch:
     ----------
     search
         A linear model and its fit.
+
+    Returns
+    -------
+    ModelSearch
+        Of the same model.
     """
     other = fit_from_ordinary_vehicle(search, search.structure)
     return other if other.fit.converged and other.gain_over(search) > search.required_of_switch else search
