@@ -147,7 +147,7 @@ other study. In {UNWEIGHED:.0%} nothing was weighed but the ballast, so that the
 from what the ballast changes. The columns are as there. A large error beside much noise or without scales is no fault of the
 program if its standard error says so: *worst in standard errors* and *covered* judge it.
 
-The program has seen these campaigns: seven of the first 120 were misjudged by the one before (7, 17, 82, 98, 104, 117 and 119),
+The program has seen the first 120 campaigns: seven of them were misjudged by the one before (7, 17, 82, 98, 104, 117 and 119),
 and what was wrong is mended. Numbers from 120 on (`--first`) are new to it.
 
 ## Results

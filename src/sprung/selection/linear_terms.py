@@ -22,7 +22,10 @@ from sprung.vehicle import layout_of, parameter_name
 SEPARATE_TRACKS = "tracks apart"
 """Springs and dampers at half-distances of their own."""
 
-GRAVITY, ENGINE, OCCUPANTS, TWIST, BENDING = "gravity", "engine", "occupants", "twist", "bending"
+GRAVITY = "gravity"
+"""What gravity takes off the roll stiffness: it tells how high the body is above its wheels."""
+
+ENGINE, OCCUPANTS, TWIST, BENDING = "engine", "occupants", "twist", "bending"
 """Terms with starts of their own: masses on springs, and a body that is not one rigid mass."""
 
 DAMPER_MOUNT = "damper-mount"
