@@ -13,13 +13,13 @@ from sprung.estimation import (
     readout_of,
     score_linear_term,
     score_linear_terms,
-    score_linear_terms_together,
 )
 from sprung.estimation.eliminated_coordinates import eliminate_coordinates
 from sprung.estimation.modal_solution import differentiate_response, solve_modes
 from sprung.preprocess import FreeDecay, prepare
 from sprung.selection.starts import neutral_values
 from sprung.selection.structure import ModelStructure, choose_structure
+from sprung.simulation import PadMotion
 from sprung.vehicle import TABLE_1_CAR, LinearModel, Readout, Vehicle, parameters_of_term
 
 LOAD = {"name": "ballast", "items": [{"mass": 140.0, "position": (-1.0, 0.0, 0.55)}]}
@@ -99,29 +99,37 @@ def test_a_part_that_is_there_gains_as_its_own_model_says(
         assert gains[term] == pytest.approx(own, rel=tolerance)
 
 
-def test_terms_that_do_nothing_gain_together_what_each_gains_alone(
-    campaign: Campaign, plain: ModelStructure, optimum: FitResult
-) -> None:
-    """Those beside a term stay at values at which they do nothing: one evaluation tells all, as it does on pads."""
-    terms = ("anti-roll", "tyre-damping", "asymmetry", "rigid-axle")
-
-    def together(chosen: tuple[str, ...]) -> dict[str, float]:
-        larger = plain.with_terms(chosen)
-        return score_linear_terms_together(
-            optimum,
-            larger.linear_models,
-            campaign.sensors,
-            larger.known,
-            values=neutral_values(larger, optimum.parameters),
-            together=[(name,) for name in optimum.parameters],
-            candidates={term: [(name,) for name in parameters_of_term(term, "shared")] for term in chosen},
-        )
-
-    found = together(terms)
+@pytest.mark.parametrize("with_drops", [False, True])
+def test_terms_gain_on_pads_what_their_own_models_say(with_drops: bool) -> None:
+    """Lines in place of modes, and both together."""
+    own = TABLE_1_CAR.parameters
+    branch = {"k_zf": 0.02 * own["k_sf"], "k_zr": 0.02 * own["k_sr"]}
+    branch |= {"c_zf": 0.05 * branch["k_zf"], "c_zr": 0.05 * branch["k_zr"]}
+    drops: list[dict[str, object]] = [{"excitation": "pads"}]
+    drops += [{"wheels": ("fl", "fr")}, {"wheels": ("fl", "rl")}] if with_drops else []
+    noise = {"acceleration": 0.02, "displacement": 5e-5, "force": 8.0}
+    pads = PadMotion("random", duration=20.0)
+    campaign = sprung.simulate(
+        Vehicle.from_parameters(own | branch), drops=drops, pads=pads, noise=noise, seed=5, rate=500.0
+    )
+    structure = choose_structure(campaign, "shared", ())
+    decays = prepare(campaign).decays
+    fit = fit_linear(decays, structure.linear_models, campaign.sensors, structure.known, start=own)
+    exact = ("anti-roll", "tyre-damping", "asymmetry", "rigid-axle")
+    terms = (*exact, "damper-mount")
+    all_in = structure.with_terms(terms)
+    sensors = readout_of(all_in.sensors, all_in.names, all_in.known)
+    brought = {term: parameters_of_term(term, "shared") for term in terms}
+    ways = [(neutral_values(all_in, fit.parameters), brought)]
+    found = score_linear_terms(fit, all_in.linear_models, sensors, ways)
+    assert found is not None
     for term in terms:
-        larger = plain.with_terms((term,))
-        start = neutral_values(larger, optimum.parameters)
-        ((alone, _),) = score_linear_term(optimum, larger.linear_models, campaign.sensors, larger.known, [start])
-        assert alone > 1
-        assert found[term] == pytest.approx(together((term,))[term], rel=1e-6)
-        assert found[term] == pytest.approx(alone, rel=0.01)
+        larger = structure.with_terms((term,))
+        start = neutral_values(larger, fit.parameters)
+        ((gain, values),) = score_linear_term(fit, larger.linear_models, campaign.sensors, larger.known, [start])
+        scored, estimates = found[0][term]
+        assert gain > 1
+        # The ends of what moves in series, which its own model has free, take up a part of the gain.
+        assert scored == pytest.approx(gain, rel=0.02 if term in exact else 0.05)
+        if term == "tyre-damping":
+            assert estimates == pytest.approx({name: values[name] for name in brought[term]}, rel=0.02)

@@ -23,6 +23,7 @@ from sprung.selection import (
     is_likelier,
     leave_out_refused,
     leave_out_unneeded,
+    or_from_ordinary_vehicle,
     select_flexible_body,
     try_term,
     with_short_steps,
@@ -48,7 +49,8 @@ def select_first_term(run: Analysis, progress: Progress) -> Analysis:
         return run
     search = found.model
     if search.structure.names != before.structure.names:
-        search = from_contact(search)
+        # Without the term wheels may have seemed to be nowhere, and the fit with it have begun there.
+        search = from_contact(or_from_ordinary_vehicle(search) if search.is_overdispersed else search)
     return _with_search(replace(run, first_term=None), before, search, "select_first_term")
 
 

@@ -18,7 +18,7 @@ from sprung.estimation.estimates import (
 )
 from sprung.estimation.fit_result import FitResult, Inflater
 from sprung.estimation.linear_fit import NEAR, STARTS, escape_local_optimum, fit_linear, weigh_statements
-from sprung.estimation.linear_scores import score_linear_term, score_linear_terms, score_linear_terms_together
+from sprung.estimation.linear_scores import score_linear_term, score_linear_terms
 from sprung.estimation.low_pass import HIGHEST_CORNER, LowPass, SampledLowPass, unexplained_squares
 from sprung.estimation.modes import UNNAMED, ModeEstimate, mode_estimates
 from sprung.estimation.monomials import parameters_from_matrices, shape_of
@@ -108,7 +108,6 @@ __all__ = [
     "score_added",
     "score_linear_term",
     "score_linear_terms",
-    "score_linear_terms_together",
     "score_nonlinear_terms",
     "score_stepped_terms",
     "shape_of",

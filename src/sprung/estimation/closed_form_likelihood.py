@@ -5,7 +5,7 @@ Initial states and offsets are eliminated (variable projection), as their readin
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -13,10 +13,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.estimation.eliminated_coordinates import eliminate_coordinates
 from sprung.estimation.modal_solution import ModalSolution, differentiate_modes, differentiate_response, turns
 from sprung.estimation.objective import ObjectiveAt
 from sprung.estimation.projected_response import ExponentialSums, ProjectedResponse
 from sprung.estimation.records import in_order
+from sprung.vehicle import LinearModel, Readout
 from sprung.vibration import exponentials, real_product
 
 if TYPE_CHECKING:
@@ -303,6 +305,19 @@ class ClosedFormAt:
         pairs = zip(self._derivatives, self._of_batches(readings), strict=True)
         both = [np.ascontiguousarray(np.concatenate([own, added], axis=2)) for own, added in pairs]
         return self._gradient(both), self._information(both)
+
+    def with_larger_model(
+        self, models: Mapping[str, LinearModel], sensors: Readout, ways: Sequence[tuple[Real, Real]]
+    ) -> tuple[Real, Real]:
+        """Return gradient and information of the parameters and of changes of a larger model, as `ObjectiveAt` has it."""
+        larger = LinearModel.stack([models[load] for load in self.loads])
+        readings = []
+        for values, changes in ways:
+            names = self.objective.sensors.names
+            forces, added = eliminate_coordinates(self.modes, names, larger, values, changes)
+            read = np.tensordot(sensors.of_accelerations(sensors.rows.at(values)), added, axes=(1, 1))
+            readings.append(self.differentiate_response(forces, np.swapaxes(read, 0, 1)))
+        return self.with_changes(np.concatenate(readings, axis=2))
 
     def group_of(self, drop: int) -> tuple[int, int]:
         """Return batch and group of a drop, by its position: drops of one group share their modes."""

@@ -75,9 +75,35 @@ class EliminatedInputs:
         return np.asarray(self.response.lines.values[self.response.part] * self.scale)
 
     @cached_property
+    def _left(self) -> Complex:
+        """Readings by differences of the states, and the lines, less what inputs explain; shape (line, channel, state + 1)."""
+        readings = np.concatenate(
+            [self.response.of_ends, self.response.lines.values[self.response.part, :, None]], axis=2
+        )
+        readings *= self.scale[:, None]
+        return self.remainder(readings)
+
+    @property
     def of_states(self) -> Complex:
         """Readings by differences of the states, less what inputs explain, shape (line, channel, state)."""
-        return self.remainder(self.response.of_ends * self.scale[:, None])
+        return self._left[:, :, :-1]
+
+    @cached_property
+    def _met(self) -> Real:
+        """Inner products of all ends with what inputs leave of the states and of the lines, shape (end, state + 1)."""
+        return self.met(self._left)
+
+    @property
+    def met_data(self) -> Real:
+        """Inner products of all ends with the lines, shape (end,)."""
+        return self._met[:, -1]
+
+    def residual(self, ends: Real) -> Complex:
+        """Return what inputs and ends leave of the lines, shape (line, channel)."""
+        states = self.of_states.shape[2]
+        corrected = self.remainder(self.of_corrections(ends[states:, None]))
+        left = self._left @ np.append(-ends[:states], 1.0)
+        return np.asarray(left - corrected[:, :, 0])
 
     @cached_property
     def corrections(self) -> tuple[Real, Real]:
@@ -114,7 +140,7 @@ class EliminatedInputs:
         size, powers = self.corrections
         states, channels = self.of_states.shape[2], len(self.scale)
         normal = np.empty((states + 2 * channels, states + 2 * channels))
-        normal[:, :states] = self.met(self.of_states)
+        normal[:, :states] = self._met[:, :states]
         normal[:states, states:] = normal[states:, :states].T
         own = np.eye(channels) - self.hat
         moments = np.tensordot(np.array([powers[0], powers[1], powers[1] ** 2]), own, axes=(1, 0))
@@ -150,8 +176,7 @@ class EliminatedEnds:
     @cached_property
     def ends(self) -> Real:
         """Ends, in units of their prior: differences of the states, then end corrections; shape (end,)."""
-        met = np.sum([block.met(block.remainder(block.data[:, :, None])[:, :, 0]) for block in self.blocks], axis=0)
-        return np.asarray(self._inverse @ met)
+        return np.asarray(self._inverse @ np.sum([block.met_data for block in self.blocks], axis=0))
 
     @property
     def _states(self) -> int:
@@ -164,8 +189,7 @@ class EliminatedEnds:
 
     @cached_property
     def _residuals(self) -> list[Complex]:
-        pairs = zip(self.blocks, self._without_ends, strict=True)
-        return [block.remainder(data[:, :, None])[:, :, 0] for block, data in pairs]
+        return [block.residual(self.ends) for block in self.blocks]
 
     @property
     def residual(self) -> Complex:
@@ -244,13 +268,33 @@ class EliminatedEnds:
     @cached_property
     def score(self) -> tuple[Real, Real]:
         """Gradient of the log-likelihood by the parameters, and their information; SI, (parameter,) and its square."""
+        return self._score(())
+
+    def with_changes(self, ways: Sequence[tuple[Sequence[ForcedResponse], Real]]) -> tuple[Real, Real]:
+        """Return gradient and information of the parameters and of changes of larger vehicles behind them.
+
+        Parameters
+        ----------
+        ways
+            The response of each larger vehicle, block by block, and how much of each of its parameters a change adds, SI, shape
+            (change, parameter).
+
+        Returns
+        -------
+        gradient, information
+            Shapes (parameter + change,) and its square.
+        """
+        return self._score(ways)
+
+    def _score(self, ways: Sequence[tuple[Sequence[ForcedResponse], Real]]) -> tuple[Real, Real]:
         gradient: Real | float = 0.0
         within: Real | float = 0.0
         met: Real | float = 0.0
-        for block, inputs, motion, residual in zip(
-            self.blocks, self._inputs, self._motions, self._residuals, strict=True
-        ):
-            derivatives = block.response.derivatives(inputs, motion)
+        for i, block in enumerate(self.blocks):
+            inputs, motion, residual = self._inputs[i], self._motions[i], self._residuals[i]
+            own = block.response.derivatives(inputs, motion)
+            changed = (larger[i].changes(block.response, inputs, motion, changes) for larger, changes in ways)
+            derivatives: Complex = np.concatenate([own, *changed], axis=2)
             derivatives *= block.scale[:, None]
             gradient = gradient + _real_products(derivatives, residual)
             left = block.remainder(derivatives)

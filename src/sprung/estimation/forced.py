@@ -85,14 +85,17 @@ class ForcedObjective:
 
     def at(self, values: Real, weights: Real) -> ForcedAt:
         """Evaluate at parameter values, SI, shape (parameter,), with weights 1/σ² of the channels, shape (channel,)."""
-        responses = tuple(
+        return ForcedAt(self, values, weights, self.responses(values))
+
+    def responses(self, values: Real) -> tuple[tuple[ForcedResponse, ...], ...]:
+        """Return the response of the vehicle at the lines of each record, block by block, at parameter values, SI."""
+        return tuple(
             tuple(
                 ForcedResponse(one, self.models[one.load], self.sensors, self.pads[one.wheels], values, part)
                 for part in one.blocks
             )
             for one in self.lines
         )
-        return ForcedAt(self, values, weights, responses)
 
     def unexplained(self, vehicles: Real, weights: Real) -> Real:
         """Return what vehicles leave of some of the lines, to rank them as starts.
@@ -218,6 +221,19 @@ class ForcedAt:
         """Gradient and information of each record; shapes (drop, parameter) and (drop, parameter, parameter)."""
         gradients, informations = zip(*(left.score for left in self._left), strict=True)
         return np.array(gradients), np.array(informations)
+
+    def with_larger_model(
+        self, models: Mapping[str, LinearModel], sensors: Readout, ways: Sequence[tuple[Real, Real]]
+    ) -> tuple[Real, Real]:
+        """Return gradient and information of the parameters and of changes of a larger model, as `ObjectiveAt` has it."""
+        larger = self.objective.with_models(models, sensors)
+        responses = [larger.responses(values) for values, _ in ways]
+        found = [
+            left.with_changes([(blocks[record], changes) for blocks, (_, changes) in zip(responses, ways, strict=True)])
+            for record, left in enumerate(self._left)
+        ]
+        gradients, informations = zip(*found, strict=True)
+        return np.sum(gradients, axis=0), np.sum(informations, axis=0)
 
     @cached_property
     def fitted(self) -> tuple[Real, ...]:

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from sprung.estimation.projected_response import initial_state_prior_std
 from sprung.estimation.spectral_lines import SpectralLines
-from sprung.vehicle import LinearModel, PadInputs, Readout
+from sprung.vehicle import LinearModel, PadInputs, Readout, coordinates
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -154,18 +154,31 @@ class ForcedResponse:
         ndarray
             Shape (line, channel, parameter).
         """
-        names, n = len(self.sensors.names), self.model.size
         of_model = len(self.model.names)
-        slopes = self.model.slopes(self.values)
-        # Forces that a change of the parameters adds: those of the matrices on the motion, and of the tyres on the wheels.
-        changed = np.concatenate(
-            [-slopes.K, -slopes.C, -slopes.M, *np.moveaxis(self.pads.force_slopes, 1, 0)[:, :of_model]], axis=2
-        )
+        found = self._direct(inputs, motion)
+        found[:, :, :of_model] += self._of_forces @ self._changed_forces(inputs, motion)
+        return found
+
+    def _changed_forces(self, inputs: Complex, motion: Complex, changes: Real | None = None) -> Complex:
+        """Return the forces that changes add: those of the matrices on the motion, and of the tyres on the wheels.
+
+        Changes are those of the parameters unless given, shape (change, parameter); (line, coordinate, change).
+        """
+        slopes = self.model.slopes(self.values, changes)
+        of_tyres = self.pads.force_slopes[: len(self.model.names)]
+        if changes is not None:
+            of_tyres = np.tensordot(changes, of_tyres, axes=1)
+        changed = np.concatenate([-slopes.K, -slopes.C, -slopes.M, *np.moveaxis(of_tyres, 1, 0)], axis=2)
+        moved = np.concatenate([*motion, inputs, self._iw[:, :, 0] * inputs], axis=1)
+        # As a product of real matrices, of which one holds pairs of real and imaginary parts.
+        pairs = np.ascontiguousarray(moved.T).view(float)
+        forces = (changed.reshape(-1, changed.shape[2]) @ pairs).view(np.complex128)
+        return np.asarray(forces.reshape(len(changed), -1, len(moved)).transpose(2, 1, 0))
+
+    def _direct(self, inputs: Complex, motion: Complex) -> Complex:
+        """Return the derivatives of the readings by the parameters, the motion held; shape (line, channel, parameter)."""
         iw = self._iw[:, :, 0]
-        moved = np.concatenate([*motion, inputs, iw * inputs], axis=1)
-        forces = (moved @ changed.reshape(-1, changed.shape[2]).T).reshape(-1, of_model, n)
-        found = np.zeros((len(iw), len(self.lines.usable), names), dtype=np.complex128)
-        found[:, :, :of_model] = self._of_forces @ np.swapaxes(forces, 1, 2)
+        found = np.zeros((len(iw), len(self.lines.usable), len(self.sensors.names)), dtype=np.complex128)
         turns = None if self._delays is None else self._delays[:, :, 0]
         displacement, velocity, acceleration = motion
         observed = self.sensors.observed(displacement, velocity, acceleration, axis=1)
@@ -188,3 +201,45 @@ class ForcedResponse:
                 whole = (at_rows + at_pads)[:, channel] * turns[:, channel]
                 found[:, channel, parameter] = -iw[:, 0] * whole
         return found
+
+    def changes(self, smaller: ForcedResponse, inputs: Complex, motion: Complex, changes: Real) -> Complex:
+        """Return the derivatives of the readings of a fitted vehicle by changes of this larger one, U and the ends held.
+
+        Of coordinates that the fitted one has not, only the motion is considered that the others force on them, as by
+        `eliminate_coordinates`.
+
+        Parameters
+        ----------
+        smaller
+            The response of the fitted vehicle at these lines.
+        inputs, motion
+            U, and how the coordinates of the fitted vehicle follow, as from its `motion`.
+        changes
+            How much of each parameter of the larger one a change adds, SI, shape (change, parameter).
+
+        Returns
+        -------
+        ndarray
+            Shape (line, channel, change).
+        """
+        every = coordinates(self.model.names)
+        own = [every.index(one) for one in coordinates(smaller.model.names)]
+        others = np.setdiff1d(np.arange(len(every)), own)
+        M, C, K = self.model.matrices(self.values)
+        stiffness = K + self._iw * C + self._iw**2 * M
+        among, back = stiffness[:, others[:, None], others], stiffness[:, own, :][:, :, others]
+        displacement, velocity, acceleration = motion
+        across = others[:, None], own
+        forced = displacement @ K[across].T + velocity @ C[across].T + acceleration @ M[across].T
+        lifted = np.zeros((3, len(forced), len(every)), dtype=np.complex128)
+        lifted[:, :, own] = motion
+        iw = self._iw[:, :, 0]
+        lifted[0][:, others] = -np.linalg.solve(among, forced[:, :, None])[:, :, 0]
+        lifted[1:, :, others] = lifted[0, :, others].T * np.array([iw, iw**2])
+        forces = self._changed_forces(inputs, lifted, changes)
+        added = np.linalg.solve(among, forces[:, others])
+        of_displacement, of_velocity, of_acceleration = (rows[:, others] for rows in self._of_rows)
+        read = (of_displacement + self._iw * (of_velocity + self._iw * of_acceleration)) @ added
+        read = read if self._delays is None else read * self._delays
+        direct = self._direct(inputs, lifted)[:, :, : changes.shape[1]] @ changes.T
+        return np.asarray(smaller._of_forces @ (forces[:, own] - back @ added) + read + direct)

@@ -214,6 +214,15 @@ class JointAt:
         gradients, informations = zip(*(part.by_drop for part in self.parts), strict=True)
         return self.objective.in_order(gradients), self.objective.in_order(informations)
 
+    def with_larger_model(
+        self, models: Mapping[str, LinearModel], sensors: Readout, ways: Sequence[tuple[Real, Real]]
+    ) -> tuple[Real, Real] | None:
+        """Return gradient and information of the parameters and of changes of a larger model, as `ObjectiveAt` has it."""
+        free, driven = (part.with_larger_model(models, sensors, ways) for part in self.parts)
+        if free is None or driven is None:
+            return None
+        return free[0] + driven[0], free[1] + driven[1]
+
     @cached_property
     def fitted(self) -> tuple[Real, ...]:
         """Modelled records, their means subtracted, SI; one array of shape (channel, time) per record."""

@@ -78,6 +78,7 @@ def fit_linear(
     known: Mapping[str, KnownValue],
     *,
     start: Mapping[str, float] | None = None,
+    weights: Real | None = None,
     guess: Mapping[str, float] = MappingProxyType({}),
     usual: Mapping[str, UsualValue] = MappingProxyType({}),
     starts: int = STARTS,
@@ -99,6 +100,8 @@ def fit_linear(
         Quantities measured beforehand: parameters, or derived ones as ``total_mass`` and ``wheelbase``.
     start
         Parameter values, SI, to start from; where it is left out, a direct start and a grid of usual vehicles.
+    weights
+        1/σ² of each channel, SI, shape (channel,), where another fit has found them near the `start`.
     guess
         Values of some parameters, SI, where `start` is left out: the vehicle with them competes with those of the grid.
     usual
@@ -131,7 +134,7 @@ def fit_linear(
     if start is not None:
         values = nuisance | dict(start)
         problem = problem_of(objective, known, values, usual)
-        return _fit_from(problem, values, enough, most)
+        return _fit_from(problem, values, weights, enough, most)
     names = next(iter(models.values())).names
     size = VehicleSize.of(known, sensors, layout_of(names))
     grid = (vehicle | nuisance for vehicle in start_grid(size, known, "m_e" in names))
@@ -187,9 +190,9 @@ def problem_of(
 
 
 def _fit_from(
-    problem: EstimationProblem, values: Mapping[str, float], enough: float, most: int = MOST_STEPS
+    problem: EstimationProblem, values: Mapping[str, float], weights: Real | None, enough: float, most: int
 ) -> FitResult:
-    end = problem.maximise(problem.priors.nearest(values), None, enough, CLOSE_BY, most)
+    end = problem.maximise(problem.priors.nearest(values), None, enough, CLOSE_BY, most, weights=weights)
     if not np.isfinite(problem.cost(end.point)):
         # A rate that another fit found below zero may make a motion that grows beyond all bounds in this one.
         bounded = {name: value if parameter_of(name).signed else max(value, 0.0) for name, value in values.items()}

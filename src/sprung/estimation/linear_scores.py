@@ -8,9 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.estimation.closed_form import linear_objective
-from sprung.estimation.eliminated_coordinates import eliminate_coordinates
 from sprung.estimation.fit_result import FitResult
-from sprung.estimation.joint_scores import score_directions
 from sprung.estimation.linear_fit import problem_of
 from sprung.estimation.priors import Coordinates
 from sprung.estimation.problem import Iterate
@@ -33,8 +31,7 @@ def score_linear_terms(
 ) -> list[dict[str, Score]] | None:
     """Return what terms of M, C and K would gain in a fitted linear vehicle, by :term:`score tests <score test>`.
 
-    All of them follow from one evaluation of the fitted model. Of coordinates that it has not, only the motion is considered
-    that the others force on them; see `eliminate_coordinates`.
+    All of them follow from one evaluation of the fitted model; see `ObjectiveAt.with_larger_model`.
 
     Parameters
     ----------
@@ -52,21 +49,16 @@ def score_linear_terms(
     -------
     list of dict or None
         For each of the ways, by term: the gain in twice the log-likelihood, and the estimates of its parameters, SI, by name.
-        None where modal coordinates do not exist.
+        None where changes of the response have no closed form.
     """
-    at = fit.iterate.at.modal
-    if at is None:
-        return None
-    larger = LinearModel.stack([models[load] for load in at.loads])
+    all_names, known = next(iter(models.values())).names, fit.parameters
     brought = [list(dict.fromkeys(name for names in terms.values() for name in names)) for _, terms in ways]
-    readings = []
-    for (values, _), names in zip(ways, brought, strict=True):
-        numbers = np.array([values[name] for name in larger.names])
-        changed = np.array([_changed(name, larger.names) for name in names])
-        forces, added = eliminate_coordinates(at.modes, fit.names, larger, numbers, changed)
-        read = np.tensordot(sensors.of_accelerations(sensors.rows.at(numbers)), added, axes=(1, 1))
-        readings.append(at.differentiate_response(forces, np.swapaxes(read, 0, 1)))
-    gradient, information = at.with_changes(np.concatenate(readings, axis=2))
+    numbers = [np.array([{**known, **values}[name] for name in sensors.names]) for values, _ in ways]
+    changes = [np.array([_changed(name, all_names) for name in names]) for names in brought]
+    tested = fit.iterate.at.with_larger_model(models, sensors, list(zip(numbers, changes, strict=True)))
+    if tested is None:
+        return None
+    gradient, information = tested
     # Some parameters are about the same in every vehicle, and here.
     stds = np.array([parameter_of(name).usual_std for names in brought for name in names])
     at_unknown = len(fit.names) + np.flatnonzero(stds)
@@ -100,44 +92,6 @@ def _changed(name: str, names: Sequence[str]) -> Real:
     """Return 1 for each of the names that changes with a parameter, shape (name,)."""
     own = (name,) if name in names else separate_track_names(name)
     return np.array([float(other in own) for other in names])
-
-
-def score_linear_terms_together(
-    fit: FitResult,
-    models: Mapping[str, LinearModel],
-    sensors: Sequence[Sensor],
-    known: Mapping[str, KnownValue],
-    *,
-    values: Mapping[str, float],
-    together: Sequence[Sequence[str]],
-    candidates: Mapping[str, Sequence[Sequence[str]]],
-) -> dict[str, float]:
-    """Return what terms of M, C and K would gain in a fitted linear vehicle, from one evaluation of a model that has them all.
-
-    Parameters
-    ----------
-    fit
-        Of the linear vehicle.
-    models, sensors, known
-        As for `fit_linear`, of the model that has them all.
-    values
-        Its parameters where it equals the fitted one, or nearly so, SI, by name.
-    together
-        The directions of the fitted model: parameters that move together in it.
-    candidates
-        By term, the directions that it adds.
-
-    Returns
-    -------
-    dict
-        In twice the log-likelihood, to second order.
-    """
-    names = next(iter(models.values())).names
-    objective = linear_objective(fit.decays, models, readout_of(sensors, names, known), sensors)
-    problem = problem_of(objective, statements_of(known, sensors, names), values)
-    u = problem.priors.nearest(values)
-    iterate = Iterate(u, objective.at(problem.priors.coordinates.values(u), fit.weights))
-    return score_directions(problem, iterate, together, candidates)
 
 
 def score_linear_term(

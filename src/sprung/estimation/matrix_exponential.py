@@ -6,7 +6,7 @@ There, and only there, this form is used: a hundred times slower, and indifferen
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -66,6 +66,11 @@ class MatrixExponentialAt:
     def moved(self, values: Real, _damping: float = 0.0, /) -> ObjectiveAt:
         """Return the likelihood at other parameter values, SI, shape (parameter,)."""
         return self.objective.at(values, self.weights)
+
+    def with_larger_model(
+        self, _models: Mapping[str, LinearModel], _sensors: Readout, _ways: Sequence[tuple[Real, Real]], /
+    ) -> None:
+        """Return None: without modes, changes of the response have no closed form."""
 
     def with_optimal_states(self) -> MatrixExponentialAt:
         """Return the likelihood itself: initial states are eliminated."""

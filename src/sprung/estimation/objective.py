@@ -193,6 +193,30 @@ class ObjectiveAt(Protocol):
         Where initial states are not eliminated exactly they are predicted, with so much damping.
         """
 
+    def with_larger_model(
+        self, models: Mapping[str, LinearModel], sensors: Readout, ways: Sequence[tuple[Real, Real]], /
+    ) -> tuple[Real, Real] | None:
+        """Return gradient and information of the parameters and of changes of a larger model behind them.
+
+        Of coordinates that the fitted model has not, only the motion is considered that the others force on them.
+
+        Parameters
+        ----------
+        models
+            Equations of motion of the larger model by load name.
+        sensors
+            The sensors over its parameters.
+        ways
+            Several ways in which it equals the fitted one, or nearly so: its parameters, SI, shape (parameter,), and how much
+            of each a change adds, shape (change, parameter).
+
+        Returns
+        -------
+        gradient, information
+            SI, the changes of all ways one after the other; shapes (parameter + change,) and its square. None where changes of
+            the response have no closed form.
+        """
+
     def with_optimal_states(self) -> ObjectiveAt:
         """Return the likelihood with the initial states that maximise it at these parameters."""
 

@@ -241,14 +241,22 @@ class EstimationProblem:
         (first, _), (second, _) = self.priors.residuals(before.u), self.priors.residuals(after.u)
         return of_records / self.overdispersion + float(first @ first - second @ second)
 
-    def start(self, u: Real) -> Iterate:
-        """Return the first iterate, with the noise that the residuals show there."""
-        at = self.objective.at(self.priors.coordinates.values(u), self.signal_weights)
-        sums = at.residual_sums
-        if not np.isfinite(sums).all():
+    def start(self, u: Real, weights: Real | None = None) -> Iterate:
+        """Return the first iterate, with the noise that the residuals show there.
+
+        Parameters
+        ----------
+        u
+            Coordinates.
+        weights
+            1/σ² of each channel, SI, shape (channel,), where a fit near by has found them.
+        """
+        values = self.priors.coordinates.values(u)
+        at = self.objective.at(values, self.signal_weights if weights is None else weights)
+        if not np.isfinite(at.residual_sums).all():
             return Iterate(u, at)
-        at = at.reweighted(1 / self.noise_variance(sums))
-        for _ in range(1 if at.coupling is None else _NOISE_ROUNDS):
+        at = at if weights is not None else at.reweighted(1 / self.noise_variance(at.residual_sums))
+        for _ in range(1 if weights is not None or at.coupling is None else _NOISE_ROUNDS):
             at = at.reweighted(1 / self.noise_variance(at.residual_sums, at))
         return Iterate(u, at)
 
@@ -333,6 +341,7 @@ class EstimationProblem:
         damping: float = FAR,
         most: int = MOST_STEPS,
         cautious: bool = False,
+        weights: Real | None = None,
     ) -> Maximum[Iterate]:
         """Maximise the likelihood from a start.
 
@@ -352,6 +361,8 @@ class EstimationProblem:
             Steps at the most.
         cautious
             Whether the start is far away and forces are not linear.
+        weights
+            1/σ² of each channel, SI, shape (channel,), where a fit near by has found them.
 
         Returns
         -------
@@ -361,7 +372,7 @@ class EstimationProblem:
         def reaches_other(iterate: Iterate, equations: NormalEquations) -> bool:
             return other is not None and _leads_to(equations, other.point.u - iterate.u)
 
-        start = self.start(u)
+        start = self.start(u, weights)
         if not np.isfinite(start.at.residual_sums).all():
             return Maximum(start, 0, converged=False)
         steps = min(most, MOST_STEPS if tolerance <= CONVERGED else _PROVISIONAL_STEPS)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 
 from sprung.estimation.elimination import eliminate, solve_normal_equations
 from sprung.estimation.stepped_motion import SteppedMotion
+from sprung.vehicle import LinearModel, Readout
 
 if TYPE_CHECKING:
     from sprung.estimation.time_stepping import TimeSteppingObjective
@@ -67,6 +69,11 @@ class TimeSteppingAt:
     def reweighted(self, weights: Real) -> TimeSteppingAt:
         """Return the likelihood with other weights; motion and derivatives are the same, and are not computed again."""
         return replace(self, weights=weights)
+
+    def with_larger_model(
+        self, _models: Mapping[str, LinearModel], _sensors: Readout, _ways: Sequence[tuple[Real, Real]], /
+    ) -> None:
+        """Return None: changes of a stepped motion have no closed form."""
 
     def moved(self, values: Real, damping: float = 0.0, /) -> TimeSteppingAt:
         """Return the likelihood at other parameter values, with the initial states that should explain the records there.

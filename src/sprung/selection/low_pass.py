@@ -22,7 +22,7 @@ _ORDER = 4
 """Of the anti-alias filters of loggers."""
 
 _MILD, _USUAL = 160.0, 100.0
-"""Corners from which a fit begins, Hz: if there is any low-pass, one that does little explains more than none."""
+"""Corners near which a fit begins, Hz: if there is any low-pass, one that does little explains more than none."""
 
 _COLOURED = 1.1
 """Overdispersion from which a low-pass is looked for: it moves what is left by little."""
@@ -63,11 +63,11 @@ def select_low_pass(search: ModelSearch) -> ModelSearch:
     search.progress(Step("looking for a low-pass of the loggers"))
     # Motions before a low-pass are stepped more finely: one at infinity does nothing else.
     without = _refit_behind(search, LowPass(np.inf, _ORDER), _FIRST, beginning_only=True)
-    mildest = 0.8 * _highest(search)
-    mild = _begin_behind(search, min(_MILD, mildest))
+    mildest, lowest = (_with_whole_delay(search, corner) for corner in (_MILD, _USUAL))
+    mild = _begin_behind(search, mildest)
     if not mild.gain_over(without) > 0:
         return search
-    usual = _begin_behind(search, _USUAL) if mildest > _USUAL else mild
+    usual = _begin_behind(search, lowest) if lowest < mildest else mild
     found = usual if usual.gain_over(without) > 0 else mild
     found = found.refit(found.structure, _ITERATIONS, beginning_only=True)
     if not _is_possible(found) or not _gains_enough(found, without):
@@ -137,6 +137,13 @@ def _as_free(without: ModelSearch, found: ModelSearch) -> ModelSearch:
     may_gain = _CERTAINLY * first.fit.remaining_gain / first.overdispersion
     is_certain = found.gain_over(first) > first.required_of_switch + may_gain
     return first if first.fit.converged or is_certain else first.refit(first.structure, beginning_only=True)
+
+
+def _with_whole_delay(search: ModelSearch, corner: float) -> float:
+    """Return the corner near one in Hz at which slow motions come later by whole samples: a part of one is no mild change."""
+    rate = min(decay.rate for decay in search.decays)
+    samples = LowPass(corner, _ORDER).delay * rate
+    return corner * samples / max(round(samples), 1)
 
 
 def _is_possible(search: ModelSearch) -> bool:

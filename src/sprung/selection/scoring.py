@@ -11,7 +11,6 @@ from sprung.estimation import (
     readout_of,
     score_linear_term,
     score_linear_terms,
-    score_linear_terms_together,
     score_nonlinear_terms,
     score_stepped_terms,
 )
@@ -89,7 +88,7 @@ def _linear(search: ModelSearch, terms: Sequence[str]) -> tuple[ModelSearch, Sco
 
 
 def _of_fitted_model(search: ModelSearch, terms: Sequence[str]) -> Scores:
-    """Score linear terms by what they would force on the fitted model; empty where modal coordinates do not exist.
+    """Score linear terms by what they would force on the fitted model; empty where changes of the response have no closed form.
 
     Each term with its best start.
     """
@@ -107,32 +106,12 @@ def _of_fitted_model(search: ModelSearch, terms: Sequence[str]) -> Scores:
             values |= {} if undefined is None else undefined(own, variant)
         ways.append((values, {term: brought[term] for term in there}))
     sensors = readout_of(larger.sensors, larger.names, larger.known)
-    scores, found = Scores(), score_linear_terms(search.fit, larger.linear_models, sensors, ways)
-    if found is None:
-        return _of_neutral_model(search, [term for term in terms if TERMS[term].undefined is None])
-    for tests in found:
+    scores = Scores()
+    for tests in score_linear_terms(search.fit, larger.linear_models, sensors, ways) or ():
         for term, (gain, estimates) in tests.items():
             if term not in scores or gain > scores[term][0]:
                 scores[term] = gain, abs(TERMS[term].size(neutral | own | estimates))
     return scores
-
-
-def _of_neutral_model(search: ModelSearch, terms: Sequence[str]) -> Scores:
-    """Score linear terms that may do nothing at all, in one evaluation of the model that has them all.
-
-    The sizes to expect are not computed, and the typical ones are returned.
-    """
-    larger = search.with_terms(terms)
-    gains = score_linear_terms_together(
-        search.fit,
-        larger.linear_models,
-        larger.sensors,
-        larger.known,
-        values=neutral_values(larger, search.fit.parameters),
-        together=_directions(search, larger),
-        candidates=_brought(larger, terms),
-    )
-    return {term: (gain, TERMS[term].typical) for term, gain in gains.items()}
 
 
 def _directions(search: ModelSearch, larger: ModelStructure) -> list[tuple[str, ...]]:

@@ -143,6 +143,7 @@ def fit_structure(
             sensors,
             known,
             start=start,
+            weights=before.weights,
             usual=structure.usual,
             enough=enough,
             most=most,
