@@ -55,6 +55,18 @@ class Wall(NamedTuple):
         return point + step, -np.inf if point[0] + step[0] > 1.0 else float(step[0])
 
 
+class Distant(NamedTuple):
+    """A steep bowl, and a coordinate whose maximum is fifty of the longest steps away."""
+
+    def normal_equations(self, point: Real, _damping: float) -> NormalEquations:
+        curvature = np.diag([1e6, 100.0])
+        return NormalEquations(curvature, curvature @ (np.array([0.0, 50.0]) - point), curvature, np.eye(2))
+
+    def trial(self, point: Real, step: Real, _damping: float) -> tuple[Real, float]:
+        before, after = (np.array([1e6, 100.0]) @ (x - np.array([0.0, 50.0])) ** 2 for x in (point, point + step))
+        return point + step, float(before - after)
+
+
 class Cliff(NamedTuple):
     """Nothing exists but the start."""
 
@@ -279,3 +291,10 @@ def test_at_a_kink_steps_that_bring_nothing_end() -> None:
     assert (idle.steps, idle.converged) == (3, True)
     busy = maximise(Promising(0.02), np.zeros(1), tolerance=0.01, damping=0.0, most_steps=50)
     assert (busy.steps, busy.converged) == (50, False)
+
+
+def test_a_step_that_was_held_back_does_not_say_that_little_is_left() -> None:
+    """The first step gains a hundred times what the next one does, of which fifty are to come."""
+    found = maximise(Distant(), np.array([1.0, 0.0]), tolerance=450.0, damping=1e-9, most_steps=100, longest_step=1.0)
+    assert found.converged
+    np.testing.assert_allclose(found.point, [0.0, 50.0], atol=2.5)

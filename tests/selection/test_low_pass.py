@@ -31,17 +31,19 @@ def fine() -> Campaign:
     return sprung.simulate(CAR, drops=drops, seed=2, known={"m_s": TRUTH["m_s"]}, rate=FINER * RATE, noise=0.0)
 
 
-def fitted(low_pass: LowPass | None, terms: tuple[str, ...] = ("friction", "rebound")) -> ModelSearch:
+def fitted(
+    low_pass: LowPass | None, terms: tuple[str, ...] = ("friction", "rebound"), finer: int = FINER
+) -> ModelSearch:
     """Fit some of the true terms to the recordings, sampled behind a low-pass with the noise of the converter."""
-    random, recordings = np.random.default_rng(3), []
+    random, recordings, rate = np.random.default_rng(3), [], FINER * RATE / finer
     for one in fine().recordings:
         values = one.values
         if low_pass is not None:
             numerator, denominator = butter(low_pass.order, low_pass.corner, fs=FINER * RATE)
             begin = lfilter_zi(numerator, denominator) * values[:, :1]
             values = lfilter(numerator, denominator, values, axis=1, zi=begin)[0]
-        sampled = values[:, ::FINER]
-        recordings.append(replace(one, values=sampled + NOISE * random.standard_normal(sampled.shape), rate=RATE))
+        sampled = values[:, ::finer]
+        recordings.append(replace(one, values=sampled + NOISE * random.standard_normal(sampled.shape), rate=rate))
     campaign = fine().with_recordings(recordings)
     decays, plain = prepare(campaign).decays, choose_structure(campaign, "shared", ())
     start = {name: TRUTH[name] for name in plain.names}
@@ -55,9 +57,10 @@ def errors(search: ModelSearch) -> dict[str, float]:
 
 
 @pytest.mark.slow
-def test_a_low_pass_of_the_loggers_is_found() -> None:
-    """Its corner, and the parameters that it had moved."""
-    search = fitted(LOGGER)
+@pytest.mark.parametrize("finer", [FINER, 2 * FINER])
+def test_a_low_pass_of_the_loggers_is_found(finer: int) -> None:
+    """Its corner, and the parameters that it had moved, also in 250 samples a second, of which 160 Hz is more than half."""
+    search = fitted(LOGGER, finer=finer)
     found = select_low_pass(search)
     assert found.structure.low_pass is not None
     # Friction that turns round within a step of 1 ms seems to do so half a step later, a tenth of the delay of the low-pass.

@@ -110,6 +110,10 @@ class NormalEquations(NamedTuple):
         gain = float((along.conj() @ self.gradient).real) + self.eliminated
         return _limited(self.directions @ along, longest), gain
 
+    def is_held_back(self, longest: float) -> bool:
+        """Whether the Newton step would take a coordinate further than the `longest`, so that its gain is still to come."""
+        return bool(np.abs(self.step()[0]).max(initial=0.0) > longest)
+
 
 def _has_converged(equations: NormalEquations, damping: float, tolerance: float) -> bool:
     """Whether less is left to gain than a tolerance, or little more by eliminated unknowns alone."""
@@ -213,7 +217,8 @@ def maximise(
         # What the steps to come will gain, if they go on shrinking as the last two did.
         ratio = min(gain / before, _SLOWEST) if before < np.inf else _SLOWEST
         before = gain
-        if idle == _IDLE or (gain * min(ratio / (1 - ratio), 1.0) < tolerance and damping < _FIRM):
+        shrinks = gain * min(ratio / (1 - ratio), 1.0) < tolerance and damping < _FIRM
+        if idle == _IDLE or (shrinks and not equations.is_held_back(longest_step)):
             return Maximum(point, steps + 1, converged=True)
     return Maximum(point, most_steps, converged=False)
 

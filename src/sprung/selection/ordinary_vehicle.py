@@ -9,6 +9,8 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import replace
 
+import numpy as np
+
 from sprung.estimation import NEAR, UsualValue, VehicleSize, fit_linear, usual_vehicle
 from sprung.selection.error_budget import MISFIT_LEFT_AT_FIRST
 from sprung.selection.linear_terms import FLEXIBLE_BODIES
@@ -17,6 +19,7 @@ from sprung.selection.starts import start_values
 from sprung.selection.structure import ModelStructure
 from sprung.selection.terms import TERMS
 from sprung.uncertainty import KnownValue
+from sprung.vehicle import parameter_of
 
 _SPREADS: Mapping[str, float] = {
     "m_s": 1.15,
@@ -100,6 +103,31 @@ def is_ordinary(search: ModelSearch) -> bool:
         usual[name].value / usual[name].spread ** _FAR < value < usual[name].value * usual[name].spread ** _FAR
         for name, value in values.items()
     )
+
+
+def with_usual_scale(search: ModelSearch) -> dict[str, float]:
+    """Return the parameters of the present fit, all masses and rates so much smaller or larger that its body is usual.
+
+    Where nothing was weighed only what ballast changes shows the scale, and that only to a model that lacks nothing.
+
+    Parameters
+    ----------
+    search
+        The present model and its fit.
+
+    Returns
+    -------
+    dict
+        SI, by name; as they are where the vehicle was weighed, or its body may be that of a vehicle.
+    """
+    own, structure = dict(search.fit.parameters), search.structure
+    if VehicleSize.of(structure.known, structure.campaign.sensors, structure.layout).weighed:
+        return own
+    values, usual = ordinary_vehicle(structure)
+    factor = values["m_s"] / own["m_s"]
+    if abs(np.log(factor)) < _FAR * np.log(usual["m_s"].spread):
+        return own
+    return {name: value * factor if parameter_of(name).scales else value for name, value in own.items()}
 
 
 def usual_sizes(structure: ModelStructure, values: Mapping[str, float]) -> dict[str, UsualValue]:

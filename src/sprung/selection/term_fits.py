@@ -20,6 +20,7 @@ from sprung.selection.ordinary_vehicle import (
     fit_usual_terms,
     is_ordinary,
     ordinary_vehicle,
+    with_usual_scale,
 )
 from sprung.selection.scoring import WORTH_A_FIT, with_best_start
 from sprung.selection.search import ModelSearch
@@ -187,9 +188,15 @@ def with_neutral_terms(search: ModelSearch, terms: Sequence[str]) -> ModelSearch
 
 def begin_nonlinear_fit(search: ModelSearch, larger: ModelStructure) -> FitResult:
     """Take the first steps of the fit of a nonlinear model to the beginnings of the decays, until they tell models apart."""
-    enough = _enough_to_compare(search)
     return fit_structure(
-        larger, search.decays, search.fit, enough, search.progress, beginning_only=True, most=_FIRST_ITERATIONS
+        larger,
+        search.decays,
+        search.fit,
+        _enough_to_compare(search),
+        search.progress,
+        beginning_only=True,
+        most=_FIRST_ITERATIONS,
+        start=start_values(larger, with_usual_scale(search)),
     )
 
 
