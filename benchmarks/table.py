@@ -40,6 +40,8 @@ noise 0.02 m/s².
   linear fit, with coarse and fine steps. *solve_ivp and differences* (`plain_stepped.py`): the same sum of squares, every
   drop integrated by `scipy.integrate.solve_ivp` (LSODA, 1e-6), derivatives by differences, `least_squares`. It is given a
   start two percent from our optimum, our initial states and our noise levels.
+- *On pads*: one minute at 500 Hz of the same car on four pads, with displacement and force of each beside eight
+  accelerometers, beside ten drops of six seconds, which are as many samples of the accelerometers.
 - *Floor*: one product of the recordings (80 × 1500) with the fourteen exponentials (1500 × 14, complex), in NumPy
   `records @ exponentials`. In real arithmetic the same product takes half the time.
 

@@ -15,11 +15,15 @@ import sprung
 from measure import Run, Turns, peak_memory
 from plain import PlainFit
 from plain_stepped import PlainSteppedFit
+from sprung.simulation import PadMotion
 from sprung.vehicle import TABLE_1_CAR
 from ten_drops import RATE, SAMPLES, Task, ten_drops, ten_rubbing_drops
 
 TIMES = (1, 2, 4, 8, 16)
 """How many times as many samples."""
+
+PADS = 60.0
+"""s of a record on pads."""
 
 SAME = 1e-4
 """Standard errors within which two fits have the same answer."""
@@ -98,6 +102,28 @@ def test_with_friction_beside_a_general_solver(benchmark: Any) -> None:
     }
     benchmark.extra_info["standard_errors"] = {"solve_ivp, with friction": float(apart.max())}
     benchmark.extra_info["seconds"] = {name: float(np.median(times)) for name, times in turns.seconds.items()}
+
+
+def test_on_pads_beside_drops(benchmark: Any) -> None:
+    """A minute on four pads, each with displacement and force, beside ten drops of as many samples of the same sensors."""
+    noise = {"acceleration": 0.02, "displacement": 5e-5, "force": 8.0}
+    motion = PadMotion("random", duration=PADS)
+    on_pads = sprung.simulate(TABLE_1_CAR, drops=[{"excitation": "pads"}], pads=motion, noise=noise, seed=1, rate=RATE)
+    axles = [{"wheels": wheels} for wheels in (("fl", "fr"), ("rl", "rr"), ("fl", "rl"), ("fr", "rr"), ("fl",))]
+    dropped = sprung.simulate(TABLE_1_CAR, drops=2 * axles, noise=0.02, seed=1, rate=RATE, duration=PADS / 10)
+    turns = Turns(
+        {
+            "pads": (lambda: sprung.identify(on_pads), 1),
+            "drops": (lambda: sprung.identify(dropped), 5),
+            "pads, no terms": (lambda: sprung.identify(on_pads, extras=[]), 1),
+            "drops, no terms": (lambda: sprung.identify(dropped, extras=[]), 5),
+        }
+    )
+    benchmark.pedantic(turns, rounds=5, warmup_rounds=1)
+    benchmark.extra_info["ratios"] = {
+        "sprung.identify on pads / drops of as many samples": turns.ratio("pads", "drops", most=10),
+        "the same without model terms": turns.ratio("pads, no terms", "drops, no terms", most=10),
+    }
 
 
 def test_beside_the_floor(benchmark: Any, task: Task) -> None:

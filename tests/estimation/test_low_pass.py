@@ -72,7 +72,7 @@ def test_a_signal_that_did_not_pass_it_may_be_given_the_same_freedom() -> None:
 
 def test_above_the_samples_it_does_nothing() -> None:
     signals = np.random.default_rng(1).standard_normal((2, 50))
-    for low_pass in (None, LowPass(210.0, 4)):
+    for low_pass in (None, LowPass(410.0, 4)):
         sampled = SampledLowPass.of(low_pass, RATE)
         assert sampled.filtered(signals) is signals
         np.testing.assert_allclose(sampled.free_signals(50), np.full((50, 1), 50**-0.5))

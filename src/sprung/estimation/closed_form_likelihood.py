@@ -309,7 +309,18 @@ class ClosedFormAt:
     def with_larger_model(
         self, models: Mapping[str, LinearModel], sensors: Readout, ways: Sequence[tuple[Real, Real]]
     ) -> tuple[Real, Real]:
-        """Return gradient and information of the parameters and of changes of a larger model, as `ObjectiveAt` has it."""
+        """Return gradient and information of the parameters and of changes of a larger model behind them.
+
+        Parameters
+        ----------
+        models, sensors, ways
+            The larger model, as for `ObjectiveAt.with_larger_model`.
+
+        Returns
+        -------
+        gradient, information
+            SI, shapes (parameter + change,) and its square.
+        """
         larger = LinearModel.stack([models[load] for load in self.loads])
         readings = []
         for values, changes in ways:

@@ -268,7 +268,7 @@ class EliminatedEnds:
     @cached_property
     def score(self) -> tuple[Real, Real]:
         """Gradient of the log-likelihood by the parameters, and their information; SI, (parameter,) and its square."""
-        return self._score(())
+        return self.with_changes(())
 
     def with_changes(self, ways: Sequence[tuple[Sequence[ForcedResponse], Real]]) -> tuple[Real, Real]:
         """Return gradient and information of the parameters and of changes of larger vehicles behind them.
@@ -284,16 +284,15 @@ class EliminatedEnds:
         gradient, information
             Shapes (parameter + change,) and its square.
         """
-        return self._score(ways)
-
-    def _score(self, ways: Sequence[tuple[Sequence[ForcedResponse], Real]]) -> tuple[Real, Real]:
         gradient: Real | float = 0.0
         within: Real | float = 0.0
         met: Real | float = 0.0
         for i, block in enumerate(self.blocks):
             inputs, motion, residual = self._inputs[i], self._motions[i], self._residuals[i]
             own = block.response.derivatives(inputs, motion)
-            changed = (larger[i].changes(block.response, inputs, motion, changes) for larger, changes in ways)
+            changed = (
+                larger[i].derivatives_of_smaller(block.response, inputs, motion, changes) for larger, changes in ways
+            )
             derivatives: Complex = np.concatenate([own, *changed], axis=2)
             derivatives *= block.scale[:, None]
             gradient = gradient + _real_products(derivatives, residual)

@@ -202,7 +202,9 @@ class ForcedResponse:
                 found[:, channel, parameter] = -iw[:, 0] * whole
         return found
 
-    def changes(self, smaller: ForcedResponse, inputs: Complex, motion: Complex, changes: Real) -> Complex:
+    def derivatives_of_smaller(
+        self, smaller: ForcedResponse, inputs: Complex, motion: Complex, changes: Real
+    ) -> Complex:
         """Return the derivatives of the readings of a fitted vehicle by changes of this larger one, U and the ends held.
 
         Of coordinates that the fitted one has not, only the motion is considered that the others force on them, as by

@@ -143,7 +143,8 @@ def fit_structure(
             sensors,
             known,
             start=start,
-            weights=before.weights,
+            # Levels of noise that eliminated unknowns couple take several rounds to settle.
+            weights=None if before.iterate.at.coupling is None else before.weights,
             usual=structure.usual,
             enough=enough,
             most=most,
