@@ -66,3 +66,12 @@ def test_what_physics_forbids_to_be_negative() -> None:
     assert TERMS["anti-roll"].not_negative("shared") == ("k_af", "k_ar")
     assert TERMS["asymmetry"].not_negative("shared") == ()
     assert TERMS[SEPARATE_TRACKS].not_negative("separate") == ()
+
+
+def test_what_most_vehicles_have_beside_a_term_is_there_with_it() -> None:
+    """A mount and a tyre that stiffens have damping; tyres as such may hide theirs."""
+    assert TERMS["mount-damping"].is_usual_beside(("zener", "damper-mount"))
+    assert TERMS["tyre-damping"].is_usual_beside(("tyre-curve",))
+    assert not TERMS["tyre-damping"].is_usual_beside(())
+    assert not TERMS["tyre-damping"].is_usual_beside(("damper-mount",))
+    assert not TERMS["second-knee"].is_usual_beside(("damper-curve",))

@@ -26,7 +26,7 @@ def estimate_uncertainty(run: Analysis, progress: Progress) -> Analysis:
         while (determined := leave_out_undetermined(search, statistics)) is not search:
             search = replace(determined, fit=weigh_statements(determined.fit))
             statistics = uncertainty_of(search.fit)
-    statistics = _with_absent_refinements(search, statistics)
+    statistics = _with_usual_but_absent(search, statistics)
     refused = search.steps[len(run.model.steps) :]
     run = replace(run, search=search, statistics=statistics, fits=run.fits + len(refused))
     for step in refused:
@@ -35,13 +35,14 @@ def estimate_uncertainty(run: Analysis, progress: Progress) -> Analysis:
     return run.noted("estimate_uncertainty", what, statistics.inflated_by)
 
 
-def _with_absent_refinements(search: ModelSearch, statistics: FitStatistics) -> FitStatistics:
+def _with_usual_but_absent(search: ModelSearch, statistics: FitStatistics) -> FitStatistics:
     """Count what most vehicles have beside a term of the model, a mount its damping, and the recordings did not show.
 
     Its absence is no knowledge: it may have its usual size.
     """
     structure = search.structure
-    absent = [term for term in search.open_terms(tuple(TERMS)) if TERMS[term].usually_refines and TERMS[term].is_linear]
+    open_terms = (TERMS[term] for term in search.open_terms(tuple(TERMS)))
+    absent = [one.name for one in open_terms if one.is_usual_beside(structure.terms) and one.is_linear]
     usual = {
         name: value
         for term in absent

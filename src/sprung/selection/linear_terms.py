@@ -168,6 +168,7 @@ LINEAR_TERMS = (
         "tyre-damping",
         of_axles(lambda p, axle: p[f"c_t{axle}"] / p[f"c_s{axle}"]),
         usual=lambda own, _: {f"c_t{axle}": _TYRE_DAMPING * own[f"c_s{axle}"] for axle in axles_of(own)},
+        accompanies="tyre-curve",
         typical=_TYRE_DAMPING,
         spread=2.5,
         negligible=0.005,

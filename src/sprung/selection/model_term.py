@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -70,6 +70,8 @@ class ModelTerm:
         Term that takes its place where its character is none of its kind: both move alike.
     part
         Part of the vehicle that has one of several laws, of which it is one: scores do not tell them apart.
+    accompanies
+        Term beside which most vehicles have this one as well, a tyre that stiffens its damping; empty where there is none.
     on_request
         Whether so few vehicles have it that it is in the model only where the campaign states it.
     """
@@ -92,6 +94,7 @@ class ModelTerm:
     band: tuple[float, float] = (0.0, np.inf)
     counterpart: str = ""
     part: str = ""
+    accompanies: str = ""
     on_request: bool = False
 
     @property
@@ -104,10 +107,19 @@ class ModelTerm:
         """Term without which it is nothing, and whose law it changes; empty where there is none."""
         return REFINED.get(self.name, "")
 
-    @property
-    def usually_refines(self) -> bool:
-        """Whether most vehicles that have the term which it refines have it as well, as a mount has its damping."""
-        return bool(self.refines) and self.usual is not None
+    def is_usual_beside(self, terms: Collection[str]) -> bool:
+        """Whether most vehicles with these terms have it as well, as a mount has its damping, and a tyre that stiffens.
+
+        Parameters
+        ----------
+        terms
+            Of the model.
+
+        Returns
+        -------
+        bool
+        """
+        return self.usual is not None and bool({self.refines, self.accompanies} & {*terms})
 
     @property
     def adds_coordinates(self) -> bool:

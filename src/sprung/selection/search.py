@@ -104,9 +104,10 @@ class ModelSearch:
         """Gain in twice the log-likelihood from which a term is significant: what a score test has to promise."""
         row = TERMS[term]
         parameters = row.parameters(self.structure.tracks, self.structure.layout)
-        # What most vehicles have beside the term that it refines, a mount its damping, is no discovery: only chance speaks
+        # What most vehicles have beside a term of the model, a mount its damping, is no discovery: only chance speaks
         # against it, and without it the other one's parameters are wrong.
-        return required_gain(len(parameters), *((1, 1.0) if row.usually_refines else (_HYPOTHESES, self.samples)))
+        is_usual = row.is_usual_beside(self.structure.terms)
+        return required_gain(len(parameters), *((1, 1.0) if is_usual else (_HYPOTHESES, self.samples)))
 
     def required(self, term: str) -> float:
         """Gain in twice the log-likelihood that is required of a term; where much is left to explain, a part of that."""
