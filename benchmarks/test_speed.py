@@ -109,8 +109,8 @@ def test_on_pads_beside_drops(benchmark: Any) -> None:
     noise = {"acceleration": 0.02, "displacement": 5e-5, "force": 8.0}
     motion = PadMotion("random", duration=PADS)
     on_pads = sprung.simulate(TABLE_1_CAR, drops=[{"excitation": "pads"}], pads=motion, noise=noise, seed=1, rate=RATE)
-    axles = [{"wheels": wheels} for wheels in (("fl", "fr"), ("rl", "rr"), ("fl", "rl"), ("fr", "rr"), ("fl",))]
-    dropped = sprung.simulate(TABLE_1_CAR, drops=2 * axles, noise=0.02, seed=1, rate=RATE, duration=PADS / 10)
+    drops = [{"wheels": wheels} for wheels in (("fl", "fr"), ("rl", "rr"), ("fl", "rl"), ("fr", "rr"), ("fl",))]
+    dropped = sprung.simulate(TABLE_1_CAR, drops=2 * drops, noise=0.02, seed=1, rate=RATE, duration=PADS / 10)
     turns = Turns(
         {
             "pads": (lambda: sprung.identify(on_pads), 1),

@@ -322,9 +322,8 @@ class ClosedFormAt:
             SI, shapes (parameter + change,) and its square.
         """
         larger = LinearModel.stack([models[load] for load in self.loads])
-        readings = []
+        names, readings = self.objective.sensors.names, []
         for values, changes in ways:
-            names = self.objective.sensors.names
             forces, added = eliminate_coordinates(self.modes, names, larger, values, changes)
             read = np.tensordot(sensors.of_accelerations(sensors.rows.at(values)), added, axes=(1, 1))
             readings.append(self.differentiate_response(forces, np.swapaxes(read, 0, 1)))

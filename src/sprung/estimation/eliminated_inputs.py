@@ -77,11 +77,8 @@ class EliminatedInputs:
     @cached_property
     def _left(self) -> Complex:
         """Readings by differences of the states, and the lines, less what inputs explain; shape (line, channel, state + 1)."""
-        readings = np.concatenate(
-            [self.response.of_ends, self.response.lines.values[self.response.part, :, None]], axis=2
-        )
-        readings *= self.scale[:, None]
-        return self.remainder(readings)
+        of_ends = self.response.of_ends * self.scale[:, None]
+        return self.remainder(np.concatenate([of_ends, self.data[:, :, None]], axis=2))
 
     @property
     def of_states(self) -> Complex:

@@ -74,16 +74,26 @@ class ForcedResponse:
         return np.asarray(np.exp(-self._iw * self.sensors.delays(self.values)[:, None]))
 
     @cached_property
-    def _inverse(self) -> Complex:
-        """Receptance, the inverse of K + iω C - ω² M, shape (line, coordinate, coordinate)."""
+    def _stiffness(self) -> Complex:
+        """Dynamic stiffness K + iω C - ω² M, shape (line, coordinate, coordinate)."""
         M, C, K = self.model.matrices(self.values)
-        return np.asarray(np.linalg.inv(K + self._iw * C + self._iw**2 * M))
+        return np.asarray(K + self._iw * C + self._iw**2 * M)
+
+    @cached_property
+    def _inverse(self) -> Complex:
+        """Receptance, the inverse of the dynamic stiffness, shape (line, coordinate, coordinate)."""
+        return np.asarray(np.linalg.inv(self._stiffness))
+
+    @property
+    def _of_displacements(self) -> Complex:
+        """Readings by displacements of the coordinates, delays left out, shape (line, channel, coordinate)."""
+        of_displacement, of_velocity, of_acceleration = self._of_rows
+        return np.asarray(of_displacement + self._iw * (of_velocity + self._iw * of_acceleration))
 
     @cached_property
     def _of_forces(self) -> Complex:
         """Readings by forces on the coordinates, shape (line, channel, coordinate)."""
-        of_displacement, of_velocity, of_acceleration = self._of_rows
-        read = (of_displacement + self._iw * (of_velocity + self._iw * of_acceleration)) @ self._inverse
+        read = self._of_displacements @ self._inverse
         return np.asarray(read if self._delays is None else read * self._delays)
 
     @cached_property
@@ -228,8 +238,7 @@ class ForcedResponse:
         own = [every.index(one) for one in coordinates(smaller.model.names)]
         others = np.setdiff1d(np.arange(len(every)), own)
         M, C, K = self.model.matrices(self.values)
-        stiffness = K + self._iw * C + self._iw**2 * M
-        among, back = stiffness[:, others[:, None], others], stiffness[:, own, :][:, :, others]
+        among, back = self._stiffness[:, others[:, None], others], self._stiffness[:, own, :][:, :, others]
         displacement, velocity, acceleration = motion
         across = others[:, None], own
         forced = displacement @ K[across].T + velocity @ C[across].T + acceleration @ M[across].T
@@ -240,8 +249,7 @@ class ForcedResponse:
         lifted[1:, :, others] = lifted[0, :, others].T * np.array([iw, iw**2])
         forces = self._changed_forces(inputs, lifted, changes)
         added = np.linalg.solve(among, forces[:, others])
-        of_displacement, of_velocity, of_acceleration = (rows[:, others] for rows in self._of_rows)
-        read = (of_displacement + self._iw * (of_velocity + self._iw * of_acceleration)) @ added
+        read = self._of_displacements[:, :, others] @ added
         read = read if self._delays is None else read * self._delays
         direct = self._direct(inputs, lifted)[:, :, : changes.shape[1]] @ changes.T
         return np.asarray(smaller._of_forces @ (forces[:, own] - back @ added) + read + direct)

@@ -53,7 +53,8 @@ def score_linear_terms(
     """
     all_names, known = next(iter(models.values())).names, fit.parameters
     brought = [list(dict.fromkeys(name for names in terms.values() for name in names)) for _, terms in ways]
-    numbers = [np.array([{**known, **values}[name] for name in sensors.names]) for values, _ in ways]
+    every = [{**known, **values} for values, _ in ways]
+    numbers = [np.array([values[name] for name in sensors.names]) for values in every]
     changes = [np.array([_changed(name, all_names) for name in names]) for names in brought]
     tested = fit.iterate.at.with_larger_model(models, sensors, list(zip(numbers, changes, strict=True)))
     if tested is None:

@@ -255,8 +255,9 @@ class EstimationProblem:
         at = self.objective.at(values, self.signal_weights if weights is None else weights)
         if not np.isfinite(at.residual_sums).all():
             return Iterate(u, at)
-        at = at if weights is not None else at.reweighted(1 / self.noise_variance(at.residual_sums))
-        for _ in range(1 if weights is not None or at.coupling is None else _NOISE_ROUNDS):
+        if weights is None:
+            at = at.reweighted(1 / self.noise_variance(at.residual_sums))
+        for _ in range(_NOISE_ROUNDS if weights is None and at.coupling is not None else 1):
             at = at.reweighted(1 / self.noise_variance(at.residual_sums, at))
         return Iterate(u, at)
 

@@ -63,11 +63,11 @@ def select_low_pass(search: ModelSearch) -> ModelSearch:
     search.progress(Step("looking for a low-pass of the loggers"))
     # Motions before a low-pass are stepped more finely: one at infinity does nothing else.
     without = _refit_behind(search, LowPass(np.inf, _ORDER), _FIRST, beginning_only=True)
-    mildest, lowest = (_with_whole_delay(search, corner) for corner in (_MILD, _USUAL))
-    mild = _begin_behind(search, mildest)
+    mild_corner, usual_corner = (_with_whole_delay(search, corner) for corner in (_MILD, _USUAL))
+    mild = _begin_behind(search, mild_corner)
     if not mild.gain_over(without) > 0:
         return search
-    usual = _begin_behind(search, lowest) if lowest < mildest else mild
+    usual = _begin_behind(search, usual_corner) if usual_corner < mild_corner else mild
     found = usual if usual.gain_over(without) > 0 else mild
     found = found.refit(found.structure, _ITERATIONS, beginning_only=True)
     if not _is_possible(found) or not _gains_enough(found, without):

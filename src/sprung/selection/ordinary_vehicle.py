@@ -9,8 +9,6 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import replace
 
-import numpy as np
-
 from sprung.estimation import NEAR, UsualValue, VehicleSize, fit_linear, usual_vehicle
 from sprung.selection.error_budget import MISFIT_LEFT_AT_FIRST
 from sprung.selection.linear_terms import FLEXIBLE_BODIES
@@ -99,10 +97,13 @@ def is_ordinary(search: ModelSearch) -> bool:
     """
     _, usual = ordinary_vehicle(search.structure.with_terms(()))
     values = {name: max(search.fit.parameters[name], 0.0) for name in usual if name in search.fit.parameters}
-    return all(
-        usual[name].value / usual[name].spread ** _FAR < value < usual[name].value * usual[name].spread ** _FAR
-        for name, value in values.items()
-    )
+    return all(_is_near(value, usual[name]) for name, value in values.items())
+
+
+def _is_near(value: float, usual: UsualValue) -> bool:
+    """Whether a value is not far from a usual one."""
+    factor: float = usual.spread**_FAR
+    return usual.value / factor < value < usual.value * factor
 
 
 def with_usual_scale(search: ModelSearch) -> dict[str, float]:
@@ -123,10 +124,10 @@ def with_usual_scale(search: ModelSearch) -> dict[str, float]:
     own, structure = dict(search.fit.parameters), search.structure
     if VehicleSize.of(structure.known, structure.campaign.sensors, structure.layout).weighed:
         return own
-    values, usual = ordinary_vehicle(structure)
-    factor = values["m_s"] / own["m_s"]
-    if abs(np.log(factor)) < _FAR * np.log(usual["m_s"].spread):
+    _, usual = ordinary_vehicle(structure)
+    if _is_near(own["m_s"], usual["m_s"]):
         return own
+    factor = usual["m_s"].value / own["m_s"]
     return {name: value * factor if parameter_of(name).scales else value for name, value in own.items()}
 
 
