@@ -110,3 +110,17 @@ def test_which_falls_can_be_used(campaign: sprung.Campaign) -> None:
 def test_the_campaign_may_say_whether_the_fall_is_used(campaign: sprung.Campaign) -> None:
     told = replace(campaign, model=replace(campaign.model, fall=False))
     assert sprung.identify(told).fit.since == "landing"
+
+
+def test_a_tyre_that_damps_touches_the_ground_before_it_pushes() -> None:
+    """Where its damper pushed the wheel in the air, samples of landings were 80 times the noise off: no fall was used."""
+    damped = sprung.Vehicle.from_parameters(TABLE_1_CAR.parameters | {"c_tf": 80.0, "c_tr": 80.0})
+    tested = sprung.simulate(damped, loads=[LOAD], drops=DROPS, rate=500, duration=1.6, noise=0.02, seed=3)
+    found = sprung.identify(tested, fall=True, extras=["tyre-damping"])
+    assert found.fit.since == "release"
+    for name, truth in damped.parameters.items():
+        one = found.parameters[name]
+        assert one.value is not None
+        assert one.std is not None
+        assert abs(one.value - truth) < 4 * one.std
+    assert found.fit.inflation < 1.5

@@ -75,6 +75,11 @@ class SteppedMotion:
     def _inputs(self, every: int) -> Real:
         """Return {X, Ẋ, u, 1} of one in so many steps, shape (time, drop, input)."""
         states, forces = self.trajectory.states[::every], self.trajectory.forces[::every]
+        if self.objective.low_pass is not None:
+            # A low-pass sees where in a step a kink was passed: both of its ends share what the mean force is more.
+            before = self.stepper.unresolved(self.trajectory)
+            after = np.concatenate([before[1:], np.zeros_like(before[:1])])
+            forces = forces + (0.5 * (before + after))[::every]
         return np.concatenate([states, forces, np.ones((*states.shape[:-1], 1))], axis=-1)
 
     def _observed(self, inputs: Real) -> Real:

@@ -120,6 +120,6 @@ def _kinks(parts: CurveParts, parameters: Array) -> Kinks:
         slope, width = own.damping * ratio, none if own.rounding is None else own.rounding * shift
         for number, (velocity, left) in enumerate(zip(own.velocities, own.ratios, strict=True)):
             behind = slope * left * (_ONE if number else bend)
-            knots.append((none, none + sign, velocity * shift, sign * (behind - slope), none + width))
+            knots.append((none, none + sign, velocity * shift, sign * (behind - slope), none + width, none))
             slope = behind
     return Kinks(*(np.stack(part) for part in zip(*knots, strict=True)))

@@ -109,7 +109,7 @@ def bent_law(name: str, kinks: Callable[[Array], Kinks]) -> ForceLaw:
 def _bent(kinks_of: Callable[[Array], Kinks], parameters: Array, given: ElementInput) -> ElementForce:
     kinks, zero = kinks_of(parameters), np.zeros_like(given.travel)
     value, slope, *_ = hinge(kinks.above(given.travel, given.rate), kinks.position, kinks.width)
-    slope = kinks.jump * slope
+    value, slope = (part * kinks.may_act(given.travel) for part in (value, kinks.jump * slope))
     force, by_travel, by_rate = (
         part.sum(axis=-2) for part in (kinks.jump * value, kinks.by_travel * slope, kinks.by_rate * slope)
     )
@@ -120,7 +120,8 @@ def _bent_derivatives(
     kinks_of: Callable[[Array], Kinks], parameters: Array, given: ElementInput
 ) -> tuple[Array, Array]:
     kinks, by_parameter = kinks_of(parameters), differentiate_kinks(kinks_of, parameters)
-    value, slope, by_position, by_width = hinge(kinks.above(given.travel, given.rate), kinks.position, kinks.width)
+    found, acts = hinge(kinks.above(given.travel, given.rate), kinks.position, kinks.width), kinks.may_act(given.travel)
+    value, slope, by_position, by_width = (part * acts for part in found)
     force = np.array(
         [
             (
@@ -192,7 +193,7 @@ def _uneven_friction_derivatives(side: float, parameters: Array, given: ElementI
 
 def _rebound_kinks(parameters: Array) -> Kinks:
     (ratio, damping), none = parameters[:, None], np.zeros_like(parameters[:1])
-    return Kinks(none, none + 1.0, none, (ratio - 1.0) * damping, none)
+    return Kinks(none, none + 1.0, none, (ratio - 1.0) * damping, none, none)
 
 
 def _progressive(parameters: Array, given: ElementInput) -> ElementForce:
@@ -250,12 +251,17 @@ def _air_derivatives(parameters: Array, given: ElementInput) -> tuple[Array, Arr
 
 def _bump_stop_kinks(parameters: Array) -> Kinks:
     (stiffness, clearance), none = parameters[:, None], np.zeros_like(parameters[:1])
-    return Kinks(none - 1.0, none, clearance, -stiffness, none)
+    return Kinks(none - 1.0, none, clearance, -stiffness, none, none)
 
 
 def _ground_kinks(parameters: Array) -> Kinks:
-    (stiffness, *damping), none = parameters[:, None], np.zeros_like(parameters[:1])
-    return Kinks(stiffness, sum(damping, none), none, none - 1.0, none)
+    (stiffness, *dampers), none = parameters[:, None], np.zeros_like(parameters[:1])
+    tension = Kinks(stiffness, sum(dampers, none), none, none - 1.0, none, none)
+    if not dampers:
+        return tension
+    # A damper would push a wheel that falls fast before its tyre is down.
+    push = Kinks(-stiffness, -dampers[0], none, none + 1.0, none, none + 1.0)
+    return Kinks(*(np.concatenate(parts) for parts in zip(tension, push, strict=True)))
 
 
 def _uneven_ground_kinks(side: float, parameters: Array) -> Kinks:
@@ -292,8 +298,9 @@ BUMP_STOP = bent_law("bump-stop", _bump_stop_kinks)
 """Bump stop: stiffness, N/m, and the compression at which it is met, m, from the empty vehicle at rest."""
 
 GROUND = bent_law("ground", _ground_kinks)
-"""Unilateral contact of a tyre with the ground: cancels the tension of the linear tyre. Tyre rate, N/m, and tyre damping,
-N s/m, where it is a parameter; the travel is the height of the wheel above that at which its tyre just touches the ground."""
+"""Unilateral contact of a tyre with the ground: cancels the tension of the linear tyre, and in the air what its damper pushes.
+Tyre rate, N/m, and tyre damping, N s/m, where it is a parameter; the travel is the height of the wheel above that at which its
+tyre just touches the ground."""
 
 UNEVEN_FRICTION: Mapping[float, ForceLaw] = {
     side: ForceLaw(

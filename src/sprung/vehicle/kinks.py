@@ -6,6 +6,9 @@ Time stepping lets forces run linearly over a step. Where a law bends within it,
 at every crossing, and a fit would take that for another slope. The argument of a kink runs nearly straight over a step, so the
 mean of the force is a difference of antiderivatives. It acts as an addition to the force at the end of the step, which moves
 the vehicle but is not read.
+
+A tyre's damper pushes the wheel only while the tyre touches the ground, so a kink may act in the air alone: where the travel
+is above zero. Its force begins or ends with a jump there.
 """
 
 from __future__ import annotations
@@ -18,11 +21,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.vehicle.kink_means import excess_in_the_air, rounded_excess, sharp_excess, sharp_excess_slopes
+
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
-
-_STILL = 1e-3
-"""Change of the argument over its distance from a rounded kink, below which the law is straight within the step."""
 
 _COMPLEX_STEP = 1e-30
 """Of a parameter, for derivatives without differences of nearly equal numbers."""
@@ -42,6 +44,8 @@ class Kinks(NamedTuple):
     width
         Half the width over which a hyperbola rounds it, (u + sqrt(u² + w²))/2 instead of max(u, 0); zero for none. The force
         is then less by what it is at the argument zero, and none below that.
+    in_the_air
+        1 for a sharp kink that acts only where the travel is above zero, else 0.
     """
 
     by_travel: Array
@@ -49,11 +53,20 @@ class Kinks(NamedTuple):
     position: Array
     jump: Array
     width: Array
+    in_the_air: Array
 
     def above(self, travel: Array, rate: Array) -> Array:
         """Return how far arguments are above the positions, shape (..., kink, element), from those of elements."""
         found: Array = self.by_travel * travel[..., None, :] + self.by_rate * rate[..., None, :] - self.position
         return found
+
+    def may_act(self, travel: Array) -> NDArray[np.bool_]:
+        """Return where kinks act if their arguments are above their positions, shape (..., kink, element)."""
+        allowed: NDArray[np.bool_] = (self.in_the_air == 0) | (travel[..., None, :] > 0)
+        return allowed
+
+
+_FIELDS = len(Kinks._fields)
 
 
 def differentiate_kinks(kinks_of: Callable[[Array], Kinks], parameters: Array) -> Kinks:
@@ -93,44 +106,57 @@ class KinkForces:
         cls, laws: Sequence[tuple[Callable[[Array], Kinks], Index, Array, Index]], number: int, dependences: int
     ) -> KinkForces:
         """Collect the kinks of laws of elements with a number of rows, arguments as the attributes."""
-        parts, on = [np.zeros((5, 0))], [np.zeros(0, dtype=np.int64)]
+        parts, on = [np.zeros((_FIELDS, 0))], [np.zeros(0, dtype=np.int64)]
         for kinks_of, at, parameters, _ in laws:
             found = np.array(kinks_of(parameters))
-            parts.append(found.reshape(5, -1))
+            parts.append(found.reshape(_FIELDS, -1))
             on.append(np.tile(at, found.shape[1]))
         return cls(np.concatenate(on), number, Kinks(*np.concatenate(parts, 1)), laws, dependences)
 
     @cached_property
     def slopes(self) -> Kinks:
         """Derivatives of the kinks by parameters, shape (kink, dependence) each: of each, those of its row."""
-        slopes = [np.zeros((5, 0, self.dependences))]
+        slopes = [np.zeros((_FIELDS, 0, self.dependences))]
         for kinks_of, _, parameters, positions in self.laws:
             by_parameter = np.array(differentiate_kinks(kinks_of, parameters))
             _, _, kinks, elements = by_parameter.shape
-            whole = np.zeros((5, kinks, elements, self.dependences))
+            whole = np.zeros((_FIELDS, kinks, elements, self.dependences))
             for which, columns in enumerate(positions):
                 whole[:, :, np.arange(elements), columns] += by_parameter[:, which]
-            slopes.append(whole.reshape(5, -1, self.dependences))
+            slopes.append(whole.reshape(_FIELDS, -1, self.dependences))
         return Kinks(*np.concatenate(slopes, 1))
 
     @cached_property
+    def _aloft(self) -> Index:
+        """Which kinks act in the air alone."""
+        return np.flatnonzero(self.kinks.in_the_air)
+
+    @cached_property
     def _of_inputs(self) -> Array:
-        """Arguments of the kinks by travels and rates of all rows, shape (2 row, kink)."""
-        found, kink = np.zeros((2 * self.number, len(self.row_of))), np.arange(len(self.row_of))
+        """Arguments of the kinks by travels and rates of all rows, shape (2 row, kink + kink in the air)."""
+        kink = np.arange(len(self.row_of))
+        found = np.zeros((2 * self.number, len(kink) + len(self._aloft)))
         found[self.row_of, kink] = self.kinks.by_travel
         found[self.number + self.row_of, kink] = self.kinks.by_rate
+        found[self.row_of[self._aloft], len(kink) + np.arange(len(self._aloft))] = 1.0
         return found
 
     @cached_property
+    def _positions(self) -> Array:
+        """Positions of the kinks, and the travel above which those in the air act."""
+        return np.concatenate([self.kinks.position, np.zeros(len(self._aloft))])
+
+    @cached_property
     def _is_on_row(self) -> NDArray[np.bool_]:
-        """Whether each kink is on each row, shape (kink, row)."""
-        is_on_row: NDArray[np.bool_] = self.row_of[:, None] == np.arange(self.number)
+        """Whether each argument is on each row, shape (kink + kink in the air, row)."""
+        rows = np.concatenate([self.row_of, self.row_of[self._aloft]])
+        is_on_row: NDArray[np.bool_] = rows[:, None] == np.arange(self.number)
         return is_on_row
 
     @cached_property
     def _by_hinge(self) -> Array:
         """Force of each row by how far arguments are above their positions, shape (kink, row)."""
-        return np.where(self._is_on_row, self.kinks.jump[:, None], 0.0)
+        return np.where(self._is_on_row[: len(self.row_of)], self.kinks.jump[:, None], 0.0)
 
     @cached_property
     def _by_slope(self) -> Array:
@@ -151,21 +177,42 @@ class KinkForces:
         return at, width, -position, np.hypot(position, width) - position
 
     def arguments(self, inputs: Array) -> Array:
-        """Return how far each kink's argument is above its position, from travels and rates of all rows, (..., 2 row)."""
-        above: Array = inputs @ self._of_inputs - self.kinks.position
+        """Return how far each kink's argument is above its position, and of kinks in the air alone the travel.
+
+        Parameters
+        ----------
+        inputs
+            Travels and rates of all rows, shape (..., 2 row).
+
+        Returns
+        -------
+        ndarray
+            Shape (..., kink + kink in the air).
+        """
+        above: Array = inputs @ self._of_inputs - self._positions
         return above
 
     def act(self, arguments: Array) -> tuple[Array, Array]:
         """Return forces, and their slopes by travels and rates, shapes (..., row) and (..., 2 row), from `arguments`."""
-        values, slopes = np.maximum(arguments, 0.0), (arguments > 0).astype(np.float64)
+        values, slopes = self._hinges(arguments)
+        return values @ self._by_hinge, slopes @ self._by_slope
+
+    def _hinges(self, arguments: Array) -> tuple[Array, Array]:
+        """Return forces of kinks of jump one, and their slopes, shape (..., kink), from `arguments`."""
+        above = arguments[..., : len(self.row_of)]
+        values, slopes = np.maximum(above, 0.0), (above > 0).astype(np.float64)
         at, width, least, at_zero = self._rounded
         if at.size:
             # As `hinge`, of which a step needs no more than this.
-            above = arguments[..., at]
-            root = np.hypot(above, width)
-            values[..., at] = np.maximum(0.5 * (above + root - at_zero), 0.0)
-            slopes[..., at] = 0.5 * (1.0 + above / root) * (above > least)
-        return values @ self._by_hinge, slopes @ self._by_slope
+            u = above[..., at]
+            root = np.hypot(u, width)
+            values[..., at] = np.maximum(0.5 * (u + root - at_zero), 0.0)
+            slopes[..., at] = 0.5 * (1.0 + u / root) * (u > least)
+        if self._aloft.size:
+            is_aloft = arguments[..., len(self.row_of) :] > 0
+            values[..., self._aloft] *= is_aloft
+            slopes[..., self._aloft] *= is_aloft
+        return values, slopes
 
     def lie_between(self, one: Array, other: Array) -> NDArray[np.bool_]:
         """Return in which rows a kink lies between two inputs, shape (..., 2 row): travels and rates of all rows."""
@@ -180,12 +227,31 @@ class KinkForces:
         before, after
             Arguments at the start and at the end, from `arguments`.
         """
-        excess = _sharp(before, after)
-        if self._is_rounded.any():
-            at = self._is_rounded
-            excess[..., at] = _mean_rounded(before[..., at], after[..., at], self.kinks.width[at])[0]
-        found: Array = excess @ self._by_hinge
+        found: Array = self._excess(before, after) @ self._by_hinge
         return found
+
+    def unresolved(self, before: Array, after: Array) -> Array:
+        """Return what mean forces over steps are above what their ends say, N, shape (..., row), from `arguments` at both.
+
+        The ends say it by the trapezoidal rule and its correction by the slopes there (Euler and Maclaurin): to a filter,
+        which takes samples for those of a smooth signal, they say everything but where kinks lie.
+        """
+        moved = (after - before)[..., : len(self.row_of)]
+        turned = self._hinges(after)[1] - self._hinges(before)[1]
+        found: Array = (0.5 * self._excess(before, after) + moved * turned / 12.0) @ self._by_hinge
+        return found
+
+    def _excess(self, before: Array, after: Array) -> Array:
+        """Return twice the mean forces of kinks of jump one less the sum of both ends, shape (..., kink)."""
+        number, at = len(self.row_of), self._is_rounded
+        u, v = before[..., :number], after[..., :number]
+        excess = sharp_excess(u, v)
+        if at.any():
+            excess[..., at] = rounded_excess(u[..., at], v[..., at], self.kinks.width[at])[0]
+        if self._aloft.size:
+            travels = before[..., number:], after[..., number:]
+            excess[..., self._aloft] = excess_in_the_air(u[..., self._aloft], v[..., self._aloft], *travels)[0]
+        return excess
 
     def add_surplus_slopes(
         self, before: Array, after: Array, by_before: Array, by_after: Array, by_parameter: Array
@@ -201,28 +267,40 @@ class KinkForces:
         by_parameter
             Likewise of each dependence on a parameter, shape (..., dependence).
         """
+        number, aloft = len(self.row_of), self._aloft
         ends = self.arguments(before), self.arguments(after)
         # Few steps pass a kink: only these are computed.
-        *step, kink = np.nonzero((ends[0] * ends[1] < 0) | self._is_rounded)
+        passed = ends[0] * ends[1] < 0
+        passed[..., aloft] |= passed[..., number:]
+        *step, kink = np.nonzero(passed[..., :number] | self._is_rounded)
         kinks, slopes = (type(part)(*(each[kink] for each in part)) for part in (self.kinks, self.slopes))
         u, v = (end[(*step, kink)] for end in ends)
-        excess, by_u, by_v, by_width = _sharp(u, v), *_sharp_slopes(u, v), np.zeros_like(u)
+        excess, by_u, by_v, by_width = sharp_excess(u, v), *sharp_excess_slopes(u, v), np.zeros_like(u)
         if self._is_rounded.any():
             at = self._is_rounded[kink]
             for whole, part in zip(
-                (excess, by_u, by_v, by_width), _mean_rounded(u[at], v[at], kinks.width[at]), strict=True
+                (excess, by_u, by_v, by_width), rounded_excess(u[at], v[at], kinks.width[at]), strict=True
             ):
                 whole[at] = part
+        by_travels = np.zeros((2, len(u)))
+        if aloft.size:
+            at = kinks.in_the_air > 0
+            here = tuple(part[at] for part in step)
+            travels = (end[(*here, number + np.searchsorted(aloft, kink[at]))] for end in ends)
+            excess[at], by_u[at], by_v[at], *by_travels[:, at] = excess_in_the_air(u[at], v[at], *travels)
         row = self.row_of[kink]
         of_parameters = excess[:, None] * slopes.jump + (kinks.jump * by_width)[:, None] * slopes.width
-        for by_argument, inputs, total in ((by_u, before, by_before), (by_v, after, by_after)):
+        for by_argument, directly, inputs, total in (
+            (by_u, by_travels[0], before, by_before),
+            (by_v, by_travels[1], after, by_after),
+        ):
             by_end = by_argument * kinks.jump
             travel, rate = (*step, row), (*step, self.number + row)
             moved = (
                 inputs[travel][:, None] * slopes.by_travel + inputs[rate][:, None] * slopes.by_rate - slopes.position
             )
             of_parameters += by_end[:, None] * moved
-            np.add.at(total, travel, by_end * kinks.by_travel)
+            np.add.at(total, travel, by_end * kinks.by_travel + directly * kinks.jump)
             np.add.at(total, rate, by_end * kinks.by_rate)
         np.add.at(by_parameter, tuple(step), of_parameters)
 
@@ -254,42 +332,3 @@ def hinge(above: Array, position: Array, width: Array) -> tuple[Array, Array, Ar
         for one, sharp in zip(rounded, (above, nowhere + 1.0, nowhere, nowhere), strict=True)
     )
     return value, slope, by_position, by_width
-
-
-def _sharp(before: Array, after: Array) -> Array:
-    """Return twice the mean of max(u, 0) less the sum of both ends, where u runs straight from one to the other."""
-    least = np.finfo(np.float64).tiny
-    found: Array = np.minimum(before * after, 0.0) / np.maximum(np.abs(after - before), least)
-    return found
-
-
-def _sharp_slopes(before: Array, after: Array) -> tuple[Array, Array]:
-    """Return the derivatives of `_sharp` by both ends."""
-    change = after - before
-    crossed = before * after < 0
-    unit = np.sign(change) * crossed / np.where(crossed, change, 1.0) ** 2
-    return unit * after**2, -unit * before**2
-
-
-def _mean_rounded(before: Array, after: Array, width: Array) -> tuple[Array, Array, Array, Array]:
-    """Return the same of (u + sqrt(u² + w²))/2, and its derivatives by both ends and by the width w."""
-    roots = np.hypot(before, width), np.hypot(after, width)
-    change = after - before
-    moves = np.abs(change) > _STILL * np.minimum(*roots)
-    safe = np.where(moves, change, 1.0)
-    ends, slopes, by_width, wholes, of_width = [], [], [], [], []
-    for u, root in zip((before, after), roots, strict=True):
-        turned = width * np.arcsinh(u / width)
-        ends.append(0.5 * (u + root))
-        slopes.append(0.5 * (1.0 + u / root))
-        by_width.append(0.5 * width / root)
-        wholes.append(0.25 * (u**2 + u * root + width * turned))
-        of_width.append(0.5 * turned)
-    mean, mean_by_width = (wholes[1] - wholes[0]) / safe, (of_width[1] - of_width[0]) / safe
-    found = (
-        2.0 * mean - ends[0] - ends[1],
-        2.0 * (mean - ends[0]) / safe - slopes[0],
-        2.0 * (ends[1] - mean) / safe - slopes[1],
-        2.0 * mean_by_width - by_width[0] - by_width[1],
-    )
-    return found[0] * moves, found[1] * moves, found[2] * moves, found[3] * moves

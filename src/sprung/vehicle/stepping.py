@@ -185,6 +185,27 @@ class Stepper:
         found: Array = self.by_state @ self.by_force
         return found
 
+    def unresolved(self, trajectory: Trajectory) -> Array:
+        """Return what the mean forces of kinks over steps are above what the ends of the steps say; see `KinkForces`.
+
+        Parameters
+        ----------
+        trajectory
+            Motions that were stepped.
+
+        Returns
+        -------
+        ndarray
+            N, of the steps that end there; none at the first; shape (step + 1, drop, row).
+        """
+        states, forces = trajectory.states, trajectory.forces
+        motion = np.concatenate([states, forces, np.ones((*states.shape[:-1], 1))], axis=-1)
+        kinks, of_drop = self.forces_at.kinks, np.swapaxes(self.inputs, 1, 2)[self.kind]
+        arguments = kinks.arguments((motion[:, :, None] @ of_drop)[:, :, 0])
+        found = np.zeros_like(forces)
+        found[1:] = kinks.unresolved(arguments[:-1], arguments[1:])
+        return found
+
     def integrate(
         self, states: Array, memories: Array, steps: int, drive: StepDrive | None = None, similar: Array | None = None
     ) -> Trajectory:
