@@ -120,6 +120,22 @@ def test_what_a_tyre_that_stiffens_hides_of_its_damping_is_counted() -> None:
     assert outcome.worst_scaled[0] < 4
 
 
+@pytest.mark.slow
+def test_people_who_differ_are_found_where_no_drop_rolls() -> None:
+    """Their half-distance ended near zero while both counted as alike, and the people were refused for it: rejected."""
+    outcome = identified(249)
+    assert (outcome.verdict, {*outcome.model}, outcome.faults) == ("accept", {"occupants", "uneven-occupants"}, ())
+    assert outcome.worst_scaled[0] < 4
+
+
+@pytest.mark.long
+def test_a_damper_of_a_tyre_acts_only_on_the_ground() -> None:
+    """Falls behind a low-pass: the rebound was 5 standard errors off, as the damper acted in the air."""
+    outcome = identified(251)
+    assert (outcome.verdict, outcome.faults) == ("accept", ())
+    assert outcome.worst_scaled[0] < 4
+
+
 @pytest.mark.long
 def test_a_low_pass_is_found_in_few_samples_a_second() -> None:
     """250 a second behind 100 Hz: a mount was 4 standard errors off, found after 290 s."""

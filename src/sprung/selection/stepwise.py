@@ -442,13 +442,29 @@ def try_term(
         return tried.recorded(gains, True, True)
     against, counterpart = tried.veto(term), counterpart_of(tried, term)
     tried = tried.recorded({term: gain}, True, True)
-    if not against and TERMS[term].explains_all and search.leaves_misfit(tried.fit, MISFIT_LEFT_BY_ALL):
-        # Beside it a second one of its kind is looked for, a bending body beside people on seats, say; beside both, none.
-        is_second = len(among) < len(_LINEAR)
-        others = [other for other in among if other != term and not (is_second and TERMS[other].explains_all)]
-        tried = select_linear_terms(tried, others)
-        against = "it does not explain the whole misfit" if search.leaves_misfit(tried.fit, MISFIT_LEFT_BY_ALL) else ""
+    if TERMS[term].explains_all:
+        tried, against = _completed(search, tried, term, among, against)
     if against:
         refused = search.recorded({term: gain}, True, False, against)
         return try_term(refused, counterpart, among) if counterpart in refused.open_terms(among) else refused
     return leave_out_unneeded(tried, search, keep=term)[0]
+
+
+def _completed(
+    search: ModelSearch, tried: ModelSearch, term: str, among: Sequence[str], against: str
+) -> tuple[ModelSearch, str]:
+    """Return a model with further terms beside one that has to explain the whole misfit, and what is against it then.
+
+    What the recordings do not determine by that term alone they may beside what the rest is: where one of two people sits.
+    """
+    is_incomplete = tried.is_overdispersed and bool(tried.undetermined(term))
+    leaves_much = not against and search.leaves_misfit(tried.fit, MISFIT_LEFT_BY_ALL)
+    if not (is_incomplete or leaves_much):
+        return tried, against
+    # Beside it a second one of its kind is looked for, a bending body beside people on seats, say; beside both, none.
+    is_second = len(among) < len(_LINEAR)
+    others = [other for other in among if other != term and not (is_second and TERMS[other].explains_all)]
+    tried = select_linear_terms(tried, others)
+    if search.leaves_misfit(tried.fit, MISFIT_LEFT_BY_ALL):
+        return tried, "it does not explain the whole misfit"
+    return tried, tried.veto(term) if term in tried.selected else ""
