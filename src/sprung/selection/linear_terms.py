@@ -17,7 +17,7 @@ from sprung.selection.usual_parts import (
     usual_occupants,
     usual_twist,
 )
-from sprung.vehicle import layout_of, parameter_name
+from sprung.vehicle import PARAMETERS, layout_of, parameter_name
 
 SEPARATE_TRACKS = "tracks apart"
 """Springs and dampers at half-distances of their own."""
@@ -359,6 +359,10 @@ LINEAR_TERMS = (
             ),
             neutral=None,
         ),
+        # By people who are alike both seem to sit in the middle, from where a fit leads to a mass below zero on one side.
+        of_refined=lambda _, __: {"y_o": 0.0, "t_o": PARAMETERS["t_o"].usual},
+        character=lambda p: [2 * abs(p["d_mo"]) / p["m_o"]],
+        band=(0.0, 1.0),
     ),
     ModelTerm(
         SEAT_LOAD,

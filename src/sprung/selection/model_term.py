@@ -59,11 +59,13 @@ class ModelTerm:
         Values of those parameters that have none where the term is absent.
     first
         Values with which a fit begins instead of the neutral ones.
+    of_refined
+        Values of the term that it refines from which a fit begins as well: without it that one was led astray.
     separates_tracks
         Whether it is that dampers and springs have half-distances of their own: where it is absent they are equal.
     character
-        What tells it from other things that move alike: a natural frequency, Hz, relaxation times, s, or velocities of knees,
-        m/s; None where nothing does.
+        What tells it from other things that move alike: a natural frequency, Hz, relaxation times, s, velocities of knees, m/s,
+        or by what part of it both sides differ; None where nothing does.
     band
         Lowest and highest value that its character has.
     counterpart
@@ -89,6 +91,7 @@ class ModelTerm:
     held: str = ""
     undefined: StartValues | None = None
     first: StartValues | None = None
+    of_refined: StartValues | None = None
     separates_tracks: bool = False
     character: Callable[[Values], Sequence[float]] | None = None
     band: tuple[float, float] = (0.0, np.inf)

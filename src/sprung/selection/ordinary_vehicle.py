@@ -211,7 +211,7 @@ def or_from_ordinary_vehicle(search: ModelSearch) -> ModelSearch:
     """Return the search, or its model as fitted from an ordinary vehicle where that explains more.
 
     A model that lacks something may have led the one with a further term to another optimum; and where drops hardly show roll,
-    wheels may seem to be nowhere.
+    wheels may seem to be nowhere. A vehicle that nobody would recognise gives way to one as there are many whatever it gains.
 
     Parameters
     ----------
@@ -224,7 +224,8 @@ def or_from_ordinary_vehicle(search: ModelSearch) -> ModelSearch:
         Of the same model.
     """
     other = fit_from_ordinary_vehicle(search, search.structure)
-    return other if other.fit.converged and other.gain_over(search) > search.required_of_switch else search
+    enough = 0.0 if is_ordinary(other) and not is_ordinary(search) else search.required_of_switch
+    return other if other.fit.converged and other.gain_over(search) > enough else search
 
 
 def fit_usual_terms(search: ModelSearch, rich: ModelStructure) -> ModelSearch | None:

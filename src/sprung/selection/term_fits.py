@@ -151,8 +151,8 @@ def fit_linear_term(search: ModelSearch, term: str) -> ModelSearch:
     """Fit a model with one more linear term, from where the fit without it ended.
 
     An engine, without which all may be wrong, is fitted from nothing as well, unless nothing but noise is left; and where much
-    is left and the fit without it is a vehicle that nobody would recognise, any term from an ordinary one. A term that refines
-    another one, of which the recordings so far do not determine a part, is fitted from the usual size of that one as well.
+    is left and the fit without it is a vehicle that nobody would recognise, any term from an ordinary one. What refines a term
+    without which that one was led astray begins from other values of it as well.
     """
     search.progress(Step(f"fitting with {term}"))
     larger = search.with_terms([term])
@@ -162,11 +162,10 @@ def fit_linear_term(search: ModelSearch, term: str) -> ModelSearch:
         sensors, known = larger.sensors, larger.known
         anew = fit_linear(search.decays, larger.linear_models, sensors, known, enough=NEAR, progress=search.progress)
         ends.append(replace(search, structure=larger, fit=anew.after(search.fit)))
-    refined = TERMS[term].refines
-    if refined in search.selected and search.undetermined(refined):
-        others = {*search.structure.names} - {*TERMS[refined].parameters(larger.tracks, larger.layout)}
-        own = {name: search.fit.parameters[name] for name in others}
-        fit = fit_structure(larger, search.decays, search.fit, NEAR, search.progress, start=start_values(larger, own))
+    if (of_refined := TERMS[term].of_refined) is not None:
+        own = start_values(larger, search.fit.parameters)
+        start = own | {name: value for name, value in of_refined(own, larger).items() if name in own}
+        fit = fit_structure(larger, search.decays, search.fit, NEAR, search.progress, start=start)
         ends.append(replace(search, structure=larger, fit=fit))
     if search.is_misfit_large and not is_ordinary(search):
         ends.append(fit_from_ordinary_vehicle(search, larger))
