@@ -20,7 +20,7 @@ from sprung.campaign import Campaign
 from sprung.estimation import FitStatistics, uncertainty_of, weigh_statements
 from sprung.preprocess import DropObservation, FreeDecay, find_flights
 from sprung.progress import Progress, Step
-from sprung.selection import ModelSearch, final_tolerance, fit_structure, select_gravity_leakage
+from sprung.selection import ModelSearch, final_tolerance, fit_structure, select_gravity_leakage, with_short_steps
 from sprung.vehicle import (
     Motion,
     Readout,
@@ -85,6 +85,7 @@ def _with_fall(run: Analysis, found: Sequence[FreeDecay | None], progress: Progr
     search = select_gravity_leakage(ModelSearch(structure, other, decays, run.model.steps, progress))
     if not search.fit.converged or np.any(search.fit.noise > _NO_WORSE * fit.noise):
         return None
+    search = with_short_steps(search)  # wheels that land are more sudden than anything after
     search = replace(search, fit=weigh_statements(search.fit))
     now = uncertainty_of(search.fit)
     estimated = np.sqrt(np.diag(statistics.covariance)) > 0
