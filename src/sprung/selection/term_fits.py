@@ -236,7 +236,11 @@ def fit_nonlinear_term(search: ModelSearch, larger: ModelStructure, first: FitRe
         larger, first = _refined(search, larger, first)
         if search.leaves_misfit(first, MISFIT_LEFT):
             return None
-    return replace(search, fit=first).refit(larger)
+    if not search.structure.is_nonlinear:
+        return replace(search, fit=first).refit(larger)
+    begun = replace(search, fit=first).refit(larger, most=_STEPS_FROM_BELOW)
+    # What helped the beginnings a little may grow without bounds later, as a branch with a rate below zero does.
+    return None if search.is_better_than(begun.fit) else begun.refit(larger)
 
 
 def _refined(search: ModelSearch, larger: ModelStructure, first: FitResult) -> tuple[ModelStructure, FitResult]:
