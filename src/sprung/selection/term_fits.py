@@ -238,9 +238,9 @@ def fit_nonlinear_term(search: ModelSearch, larger: ModelStructure, first: FitRe
             return None
     if not search.structure.is_nonlinear:
         return replace(search, fit=first).refit(larger)
-    begun = replace(search, fit=first).refit(larger, most=_STEPS_FROM_BELOW)
+    early = replace(search, fit=first).refit(larger, most=_STEPS_FROM_BELOW)
     # What helped the beginnings a little may grow without bounds later, as a branch with a rate below zero does.
-    return None if search.is_better_than(begun.fit) else begun.refit(larger)
+    return None if search.is_better_than(early.fit) else early.refit(larger)
 
 
 def _refined(search: ModelSearch, larger: ModelStructure, first: FitResult) -> tuple[ModelStructure, FitResult]:
