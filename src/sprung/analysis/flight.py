@@ -46,6 +46,9 @@ _SOUND = 10.0
 _NO_WORSE = 1.1
 """Noise with the fall over noise without, in any channel, above which the vehicle did something there that no model has."""
 
+_MOST = 12
+"""Iterations of the fit with the fall, at the most: others follow wheels that land as the model does not, without an end."""
+
 _HEIGHTS = (0.02, 0.03, 0.045, 0.065, 0.09, 0.13)
 """m of blocks that nobody measured."""
 
@@ -81,7 +84,9 @@ def _with_fall(run: Analysis, found: Sequence[FreeDecay | None], progress: Progr
     decays = tuple(decay if flight is None else flight for flight, decay in zip(found, run.decays, strict=True))
     structure = replace(run.model.structure, unilateral_tyres=True)
     enough = final_tolerance(ModelSearch(structure, fit, run.decays))
-    other = fit_structure(structure, decays, fit, enough, progress, states)
+    other = fit_structure(structure, decays, fit, enough, progress, states, most=_MOST)
+    if not other.converged:
+        return None
     search = select_gravity_leakage(ModelSearch(structure, other, decays, run.model.steps, progress))
     if not search.fit.converged or np.any(search.fit.noise > _NO_WORSE * fit.noise):
         return None
