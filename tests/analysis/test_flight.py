@@ -36,6 +36,15 @@ def fallen(campaign: sprung.Campaign) -> sprung.Result:
     return sprung.identify(campaign)
 
 
+def assert_true(found: sprung.Result, vehicle: sprung.Vehicle) -> None:
+    """Check that every parameter is within four standard errors of the vehicle's."""
+    for name, truth in vehicle.parameters.items():
+        one = found.parameters[name]
+        assert one.value is not None
+        assert one.std is not None
+        assert abs(one.value - truth) < 4 * one.std
+
+
 def test_where_the_decays_tell_too_little_the_fall_is_used(landed: sprung.Result, fallen: sprung.Result) -> None:
     """Every parameter within four standard errors of the truth, and these hardly more than half of what they were."""
     assert (landed.fit.since, fallen.fit.since) == ("landing", "release")
@@ -58,11 +67,7 @@ def test_the_fall_is_used_with_sensors_as_they_are(campaign: sprung.Campaign) ->
     leaning = tuple(replace(one, tilt_std=2.0) for one in campaign.sensors)
     found = sprung.identify(replace(campaign, sensors=leaning))
     assert found.fit.since == "release"
-    for name, truth in TABLE_1_CAR.parameters.items():
-        one = found.parameters[name]
-        assert one.value is not None
-        assert one.std is not None
-        assert abs(one.value - truth) < 4 * one.std
+    assert_true(found, TABLE_1_CAR)
 
 
 @pytest.mark.long
@@ -118,9 +123,5 @@ def test_a_tyre_that_damps_touches_the_ground_before_it_pushes() -> None:
     tested = sprung.simulate(damped, loads=[LOAD], drops=DROPS, rate=500, duration=1.6, noise=0.02, seed=3)
     found = sprung.identify(tested, fall=True, extras=["tyre-damping"])
     assert found.fit.since == "release"
-    for name, truth in damped.parameters.items():
-        one = found.parameters[name]
-        assert one.value is not None
-        assert one.std is not None
-        assert abs(one.value - truth) < 4 * one.std
+    assert_true(found, damped)
     assert found.fit.inflation < 1.5
