@@ -153,8 +153,8 @@ The program has seen the campaigns up to number 357. When they were new, seven o
 two people of unlike mass), one had no result after 300 s (290), and one error was of five standard errors (251: falls of
 damped tyres). Of the 58 from 300 on, one had no result (356), and four errors were too large: 309 (two people again, seven
 standard errors), 313 (rubber that noise hides, beside a body that bends: nine, and 4 % of the spring rates), 316 (no drop
-rolls: nine, doubtful) and 320 (4.4). No sensor and no drop of all these was blamed. What was wrong is mended but for 236 and
-313, and for 320 in part. Numbers from 358 on are new to it.
+rolls: nine, doubtful) and 320 (4.4). No sensor and no drop of all these was blamed. What was wrong is mended but for 236,
+313 and 356, and for 320 in part. Numbers from 358 on are new to it.
 
 ## Results
 
