@@ -11,7 +11,8 @@ from sprung.vehicle.kinks import KinkForces
 K, C = 2e5, 80.0
 """Of a tyre, N/m and N s/m."""
 
-NO_ROWS = np.array([[0, 1]])
+PARAMETERS = np.array([[0], [1]])
+"""Their positions among the dependences."""
 
 ENDS = st.tuples(*(st.floats(-1.0, 1.0, width=16) for _ in range(4)))
 
@@ -20,7 +21,7 @@ def ground(stiffness: float = K, damping: float = C) -> KinkForces:
     """Return the ground under one tyre, whose two parameters are the two dependences."""
     assert GROUND.kinks is not None
     parameters = np.array([[stiffness], [damping]])
-    return KinkForces.of([(GROUND.kinks, np.array([0]), parameters, NO_ROWS.T)], 1, 2)
+    return KinkForces.of([(GROUND.kinks, np.array([0]), parameters, PARAMETERS)], 1, 2)
 
 
 def force_of_tyre(height: float, rate: float) -> float:

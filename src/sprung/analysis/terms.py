@@ -21,9 +21,9 @@ from sprung.selection import (
     fit_forced_terms,
     from_contact,
     is_likelier,
-    is_ordinary,
     leave_out_refused,
     leave_out_unneeded,
+    may_be_astray,
     or_from_ordinary_vehicle,
     select_flexible_body,
     try_term,
@@ -51,8 +51,7 @@ def select_first_term(run: Analysis, progress: Progress) -> Analysis:
     search = found.model
     if search.structure.names != before.structure.names:
         # Without the term wheels may have seemed to be nowhere, and the fit with it have begun there.
-        is_astray = search.is_overdispersed or not is_ordinary(search)
-        search = from_contact(or_from_ordinary_vehicle(search) if is_astray else search)
+        search = from_contact(or_from_ordinary_vehicle(search) if may_be_astray(search) else search)
     return _with_search(replace(run, first_term=None), before, search, "select_first_term")
 
 

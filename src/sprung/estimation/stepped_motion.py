@@ -72,14 +72,20 @@ class SteppedMotion:
         forces = np.concatenate([self.trajectory.forces, self.trajectory.surplus], axis=2)
         return NearbyMotion(moved, transitions, forces)
 
+    @cached_property
+    def _forces(self) -> Real:
+        """Forces of the rows as sensors read them, N, shape (step + 1, drop, row)."""
+        forces = self.trajectory.forces
+        if self.objective.low_pass is None:
+            return forces
+        # A low-pass sees where in a step a kink was passed: both of its ends share what the mean force is more.
+        before = self.stepper.unresolved(self.trajectory)
+        read: Real = forces + 0.5 * (before + np.concatenate([before[1:], np.zeros_like(before[:1])]))
+        return read
+
     def _inputs(self, every: int) -> Real:
         """Return {X, Ẋ, u, 1} of one in so many steps, shape (time, drop, input)."""
-        states, forces = self.trajectory.states[::every], self.trajectory.forces[::every]
-        if self.objective.low_pass is not None:
-            # A low-pass sees where in a step a kink was passed: both of its ends share what the mean force is more.
-            before = self.stepper.unresolved(self.trajectory)
-            after = np.concatenate([before[1:], np.zeros_like(before[:1])])
-            forces = forces + (0.5 * (before + after))[::every]
+        states, forces = self.trajectory.states[::every], self._forces[::every]
         return np.concatenate([states, forces, np.ones((*states.shape[:-1], 1))], axis=-1)
 
     def _observed(self, inputs: Real) -> Real:

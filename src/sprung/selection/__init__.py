@@ -15,7 +15,7 @@ from sprung.selection.linear_terms import ENGINE, FLEXIBLE_BODIES, SEPARATE_TRAC
 from sprung.selection.low_pass import confirm_low_pass, corner_of, select_low_pass
 from sprung.selection.model_term import ModelTerm
 from sprung.selection.nonlinear import select_nonlinear_terms
-from sprung.selection.ordinary_vehicle import is_ordinary, or_from_ordinary_vehicle
+from sprung.selection.ordinary_vehicle import is_ordinary, may_be_astray, or_from_ordinary_vehicle
 from sprung.selection.scoring import WORTH_A_FIT, score_terms
 from sprung.selection.search import ModelSearch, SelectionStep
 from sprung.selection.sensor_errors import FAR, SensorError, furthest_from_stated, sensor_error_of_fit
@@ -68,6 +68,7 @@ __all__ = [
     "leave_out_refused",
     "leave_out_undetermined",
     "leave_out_unneeded",
+    "may_be_astray",
     "needed_terms",
     "or_from_ordinary_vehicle",
     "required_gain",

@@ -100,6 +100,21 @@ def is_ordinary(search: ModelSearch) -> bool:
     return all(_is_near(value, usual[name]) for name, value in values.items())
 
 
+def may_be_astray(search: ModelSearch) -> bool:
+    """Whether a fit may have ended at a wrong optimum: it leaves more than noise, or a vehicle that nobody would recognise.
+
+    Parameters
+    ----------
+    search
+        The present model and its fit.
+
+    Returns
+    -------
+    bool
+    """
+    return search.is_overdispersed or not is_ordinary(search)
+
+
 def _is_near(value: float, usual: UsualValue) -> bool:
     """Whether a value is not far from a usual one."""
     factor: float = usual.spread**_FAR

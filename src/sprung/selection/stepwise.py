@@ -17,7 +17,7 @@ from sprung.selection.contact import from_contact, without_landings
 from sprung.selection.error_budget import MISFIT_LEFT, MISFIT_LEFT_BY_ALL
 from sprung.selection.evident_faults import with_evident_fault
 from sprung.selection.low_pass import confirm_low_pass, select_low_pass
-from sprung.selection.ordinary_vehicle import is_ordinary, or_from_ordinary_vehicle
+from sprung.selection.ordinary_vehicle import may_be_astray, or_from_ordinary_vehicle
 from sprung.selection.scoring import WORTH_A_FIT, Scores, score_terms
 from sprung.selection.search import ModelSearch
 from sprung.selection.term_fits import (
@@ -80,7 +80,7 @@ def select_linear_terms(
         search, accepted = accept_likeliest(search, ranked, scores, among)
         if not accepted:
             break
-        if (search.is_overdispersed or not is_ordinary(search)) and len(among) == len(_LINEAR):
+        if may_be_astray(search) and len(among) == len(_LINEAR):
             # The model before did not show where a wheel last touched: samples before that would accept any further term.
             search = from_contact(or_from_ordinary_vehicle(search))
         refused = ()

@@ -201,7 +201,7 @@ class Stepper:
         states, forces = trajectory.states, trajectory.forces
         motion = np.concatenate([states, forces, np.ones((*states.shape[:-1], 1))], axis=-1)
         kinks, of_drop = self.forces_at.kinks, np.swapaxes(self.inputs, 1, 2)[self.kind]
-        arguments = kinks.arguments((motion[:, :, None] @ of_drop)[:, :, 0])
+        arguments = kinks.arguments(np.swapaxes(np.swapaxes(motion, 0, 1) @ of_drop, 0, 1))
         found = np.zeros_like(forces)
         found[1:] = kinks.unresolved(arguments[:-1], arguments[1:])
         return found
