@@ -190,6 +190,11 @@ class Analysis:
         return self.isolated[1] if self.isolated is not None and self.isolated[0] is self.fit else ()
 
     @property
+    def refuting(self) -> tuple[Fault, ...]:
+        """What was isolated last that shows that no vehicle recorded all drops; it holds for later steps of the fit too."""
+        return tuple(one.fault for one in self.isolated[1] if one.is_refuting) if self.isolated is not None else ()
+
+    @property
     def fit(self) -> FitResult:
         """Where the last fit ended."""
         return self.model.fit

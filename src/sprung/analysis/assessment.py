@@ -70,7 +70,8 @@ def assess(run: Analysis, progress: Progress) -> Analysis:
     validated = cross_validate_drops(optimum, fit, decays, channels, motions)
     contradicting = sum(any(fault.code in CONTRADICTING for fault in faults) for _, faults in run.prepared.left_out)
     reasons = [*(fault.what for fault in suspected), *_unexplained_beginning(run)]
-    verdict = decide_verdict(fit, misfit, estimates, channels, reasons, validated, contradicting)
+    refuting = [fault.what for fault in run.refuting]
+    verdict = decide_verdict(fit, misfit, estimates, channels, reasons, validated, contradicting, refuting)
     rejected = verdict.state == "reject"
     profiles = {} if rejected else profiles_of(run.options.profile, optimum, statistics, structure.known, progress)
     loads = [load.name for load in campaign.loads if any(decay.load == load.name for decay in decays)]

@@ -33,6 +33,9 @@ from sprung.selection import select_finite_rotation as select_rotation
 from sprung.selection import select_linear_terms as select_linear
 from sprung.selection import select_nonlinear_terms as select_nonlinear
 
+_NO_TERM = "no term is tried", "no vehicle recorded all drops, whatever terms its model has"
+"""What is noted of recordings of several vehicles."""
+
 
 def select_first_term(run: Analysis, progress: Progress) -> Analysis:
     """Try what explains much of the misfit, one term after the other; a body that is flexible is looked for otherwise."""
@@ -58,6 +61,8 @@ def select_first_term(run: Analysis, progress: Progress) -> Analysis:
 def select_linear_terms(run: Analysis, progress: Progress) -> Analysis:
     """Select the terms that the matrices M, C and K hold."""
     before = run.model
+    if run.refuting:
+        return run.noted("select_linear_terms", *_NO_TERM)
     search = _rigid_or_flexible(run, replace(before, progress=progress))
     if search.structure.names != before.structure.names:
         # The fit has moved since a term was accepted: it may speak against it now, and what it explained be another one's.
@@ -107,6 +112,8 @@ def flexible_body_given_up(run: Analysis, search: ModelSearch) -> ModelSearch:
 def select_finite_rotation(run: Analysis, progress: Progress) -> Analysis:
     """Take into account that the body turns by finite angles, if the recordings show it."""
     before = replace(run.model, progress=progress)
+    if run.refuting:
+        return run.noted("select_finite_rotation", *_NO_TERM)
     _, plain = structures(run)
     search = select_rotation(before, plain)
     if search is before:
@@ -124,6 +131,8 @@ def select_nonlinear_terms(run: Analysis, progress: Progress) -> Analysis:
     before, requested = replace(run.model, progress=progress), run.requested
     if requested is not None and requested.is_nonlinear:
         search = fit_forced_terms(before, requested)
+    elif run.refuting:
+        return run.noted("select_nonlinear_terms", *_NO_TERM)
     elif has_flexible_body(run):
         search = before
     else:
@@ -141,6 +150,8 @@ def select_nonlinear_terms(run: Analysis, progress: Progress) -> Analysis:
         if search.fault is not None:
             run = _noted_steps(run, run.model, search, "select_nonlinear_terms")
             wrong = correct_beside_terms(CandidateFit.of(found, run.decays, run.fit), search.fault)
+            if any(one.is_refuting for one in wrong):
+                return replace(run, isolated=(run.fit, tuple(wrong)))
             return restart_corrected(run, wrong, "select_nonlinear_terms")
     if search.structure.names != before.structure.names:
         # The search compares fits to beginnings, or to a standard error: at the optimum a term may turn out to be nothing.

@@ -82,6 +82,7 @@ def decide_verdict(
     suspected: Sequence[str] = (),
     drops: Mapping[str, DropValidation] = _NO_DROPS,
     contradicting: int = 0,
+    refuting: Sequence[str] = (),
 ) -> Verdict:
     """Decide whether the estimates may be used.
 
@@ -101,12 +102,16 @@ def decide_verdict(
         Cross-validation of each drop, by its name.
     contradicting
         Drops that were left out because they contradict the others.
+    refuting
+        What shows that no vehicle recorded all drops, in words.
 
     Returns
     -------
     Verdict
     """
     relative, over_noise = model_error
+    if refuting:  # then what the fit to all drops says is of no vehicle
+        return Verdict("reject", tuple(refuting))
     worst = int(np.argmax(relative))
     size = float(relative[worst])
     unexplained = list(_unexplained(size, float(over_noise[worst]), channels[worst]))

@@ -8,6 +8,7 @@ from typing import Any
 
 from sprung.errors import Fault
 from sprung.faults.campaign.exchanged_loads import loads_fault
+from sprung.faults.campaign.several_vehicles import of_two_vehicles
 from sprung.faults.candidate_fit import CandidateFit
 from sprung.faults.channel.delay import delay_fault
 from sprung.faults.channel.gain import gain_fault
@@ -49,6 +50,8 @@ def correct_beside_terms(base: CandidateFit, fault: SensorError | UnlikeDrops) -
     """
     if isinstance(fault, SensorError):
         return [_of_sensor(base, fault)]
+    if fault.others:
+        return [of_two_vehicles(base, (fault.others, fault.recordings))]
     if fault.loads:
         return [
             Hypothesis(

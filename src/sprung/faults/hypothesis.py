@@ -55,6 +55,8 @@ class Hypothesis:
         Whether nothing that a vehicle may have passes for it: it is evident although the model leaves a part of the misfit.
     required
         Gain in twice the log-likelihood that it needs by the error budget.
+    is_refuting
+        Whether no vehicle recorded all of this if it holds, whatever terms its model has.
     """
 
     fault: Fault
@@ -71,6 +73,7 @@ class Hypothesis:
     is_sufficient: bool = False
     is_gross: bool = False
     required: float = SIGNIFICANT
+    is_refuting: bool = False
 
     @property
     def is_explained(self) -> bool:

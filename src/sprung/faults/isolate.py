@@ -8,7 +8,14 @@ from dataclasses import replace
 import numpy as np
 
 from sprung.estimation import FitResult
-from sprung.faults.campaign import exchanged_channels, exchanged_loads, high_passes, load_position, torsion_test
+from sprung.faults.campaign import (
+    exchanged_channels,
+    exchanged_loads,
+    high_passes,
+    load_position,
+    several_vehicles,
+    torsion_test,
+)
 from sprung.faults.campaign.known_quantity import known_quantities
 from sprung.faults.campaign.load_frame import load_frames
 from sprung.faults.candidate_fit import CandidateFit
@@ -60,6 +67,10 @@ def isolate(base: CandidateFit, progress: Progress = silent) -> tuple[tuple[Hypo
     while len(accepted) < _MOST_FAULTS:
         best, more = most_likely(base, progress)
         fits += more
+        if base is first and (best is None or not _explains(first, best)):
+            mixed = several_vehicles(first)
+            if mixed is not None:
+                return (mixed,), fits
         if best is None or (not best.is_specific and any(not one.is_specific for one in accepted)):
             break
         if not best.is_specific and best.candidate.is_explained and any(one.overlaps(best) for one in accepted):

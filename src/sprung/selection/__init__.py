@@ -19,6 +19,7 @@ from sprung.selection.ordinary_vehicle import is_ordinary, may_be_astray, or_fro
 from sprung.selection.scoring import WORTH_A_FIT, score_terms
 from sprung.selection.search import ModelSearch, SelectionStep
 from sprung.selection.sensor_errors import FAR, SensorError, furthest_from_stated, sensor_error_of_fit
+from sprung.selection.several_vehicles import Groups, divide_drops
 from sprung.selection.starts import fit_structure
 from sprung.selection.step_length import with_short_steps
 from sprung.selection.stepwise import select_linear_terms, try_term
@@ -43,6 +44,7 @@ __all__ = [
     "STARTED_LATER",
     "TERMS",
     "WORTH_A_FIT",
+    "Groups",
     "ModelSearch",
     "ModelStructure",
     "ModelTerm",
@@ -55,6 +57,7 @@ __all__ = [
     "confirm_low_pass",
     "corner_of",
     "describe_terms",
+    "divide_drops",
     "final_tolerance",
     "fit_flexible_bodies",
     "fit_forced_terms",

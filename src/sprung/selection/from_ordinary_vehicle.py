@@ -23,10 +23,12 @@ from sprung.selection.ordinary_vehicle import (
     is_ordinary,
 )
 from sprung.selection.search import ModelSearch
+from sprung.selection.several_vehicles import divide_partly, of_group
 from sprung.selection.starts import start_variants
 from sprung.selection.stepwise import select_terms_beside
 from sprung.selection.structure import ModelStructure
 from sprung.selection.terms import TERMS
+from sprung.selection.unlike_drops import UnlikeDrops
 
 
 def select_flexible_body(search: ModelSearch) -> ModelSearch:
@@ -126,7 +128,23 @@ def select_from_ordinary_vehicle(search: ModelSearch, plain: ModelStructure) -> 
         return search
     search.progress(Step("fitting an ordinary vehicle with every usual term"))
     flexible = tuple(name for name in search.selected if name in FLEXIBLE_BODIES)
-    return select_beside_usual_terms(search, plain.with_terms((*plain.terms, *flexible, *terms)))
+    rich = plain.with_terms((*plain.terms, *flexible, *terms))
+    found = select_beside_usual_terms(search, rich)
+    if flexible or not search.seeks_faults or found.fault is not None or found.structure is not search.structure:
+        return found
+    return replace(found, fault=_two_vehicles(search, rich))
+
+
+def _two_vehicles(search: ModelSearch, rich: ModelStructure) -> UnlikeDrops | None:
+    """Return the drops of another vehicle, where two with every usual term explain what one does not."""
+    search.progress(Step("dividing the drops between two vehicles"))
+    groups = divide_partly(search)
+    for group in groups or ():
+        own = of_group(search, group)
+        found = fit_usual_terms(own, rich)
+        if found is None or own.leaves_misfit(found.fit, MISFIT_LEFT):
+            return None
+    return None if groups is None else UnlikeDrops(groups[1], {}, groups[0])
 
 
 def select_beside_usual_terms(search: ModelSearch, rich: ModelStructure) -> ModelSearch:

@@ -1,4 +1,4 @@
-"""Drops that are unlike all others beside nonlinear terms: another load than stated, a passenger, a brake."""
+"""Drops that are unlike all others beside nonlinear terms: another load than stated, a passenger, a brake, another vehicle."""
 
 from __future__ import annotations
 
@@ -37,10 +37,13 @@ class UnlikeDrops(NamedTuple):
         The names of their recordings.
     loads
         By recording the load with which they are like the others; empty where none makes them so.
+    others
+        The recordings of all others, where another vehicle explains these; else empty.
     """
 
     recordings: tuple[str, ...]
     loads: Mapping[str, str]
+    others: tuple[str, ...] = ()
 
 
 def find_unlike_drops(search: ModelSearch) -> UnlikeDrops | None:

@@ -1,4 +1,4 @@
-"""What may be wrong with a whole campaign: exchanged channels and loads, places of loads, high-passes, statements.
+"""What may be wrong with a whole campaign: exchanged channels and loads, places of loads, high-passes, several vehicles.
 
 One hypothesis per file. Where no closed form tells the residuals, they follow from one Gauss-Newton step; `confirm` fits.
 """
@@ -9,6 +9,7 @@ from sprung.faults.campaign.high_passes import high_passes
 from sprung.faults.campaign.known_quantity import known_quantities
 from sprung.faults.campaign.load_frame import load_frames
 from sprung.faults.campaign.load_position import load_position
+from sprung.faults.campaign.several_vehicles import several_vehicles
 from sprung.faults.campaign.torsion import torsion_test
 
 __all__ = [
@@ -18,5 +19,6 @@ __all__ = [
     "known_quantities",
     "load_frames",
     "load_position",
+    "several_vehicles",
     "torsion_test",
 ]
