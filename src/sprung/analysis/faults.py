@@ -9,6 +9,7 @@ from sprung.analysis.analysis import MOST_RESTARTS, Analysis
 from sprung.analysis.baseline import converged
 from sprung.analysis.correcting import restart_corrected
 from sprung.analysis.first_term import explaining_term, rivalling_term
+from sprung.analysis.on_pads import has_pads
 from sprung.analysis.settling import settle_corrections
 from sprung.analysis.terms import flexible_body_given_up, select_finite_rotation
 from sprung.errors import Fault
@@ -29,6 +30,7 @@ from sprung.selection import (
     SEPARATE_TRACKS,
     ModelSearch,
     ModelStructure,
+    find_sensor_error,
     fit_structure,
     furthest_from_stated,
     needed_terms,
@@ -62,6 +64,9 @@ def isolate_evident_faults(run: Analysis, progress: Progress) -> Analysis:
         return run.noted(
             "isolate_evident_faults", "faults are not looked for again", "none explained any of the same misfit"
         )
+    on_pads = _sensor_on_pads(run, wholly=True)
+    if on_pads:
+        return restart_corrected(run, on_pads, "isolate_evident_faults")
     run = _with_isolated(run, consistency, progress)
     if not _is_evident(run.found):
         return run
@@ -91,7 +96,7 @@ def _body_given_up(run: Analysis, progress: Progress) -> tuple[str, str] | None:
 def isolate_faults(run: Analysis, progress: Progress) -> Analysis:
     """Correct what explains much of what no model term explains; what is ambiguous is only named."""
     run = _with_isolated(run, _consistency(run), progress)
-    found = run.found or _sensor_of_fit(run)
+    found = run.found or _sensor_of_fit(run) or _sensor_on_pads(run, wholly=False)
     named = tuple(one.fault for one in found if one.remedy == "named") or (
         () if found else _suspected_sensor(run.model)
     )
@@ -113,6 +118,22 @@ def _sensor_of_fit(run: Analysis) -> tuple[Hypothesis, ...]:
     if error is None:
         return ()
     return tuple(correct_beside_terms(CandidateFit.of(run.model.structure, run.decays, run.fit), error))
+
+
+def _sensor_on_pads(run: Analysis, *, wholly: bool) -> tuple[Hypothesis, ...]:
+    """Return the one sensor that stands out in a misfit on pads, with what corrects that; as far as it explains it wholly.
+
+    Pads drive the vehicle all the time, so that no channel is predicted from where the vehicle was at first: which sensor it is
+    follows from what the recordings alone would say of each.
+    """
+    if len(run.corrected) >= MOST_RESTARTS or not has_pads(run):
+        return ()
+    base = CandidateFit.of(run.model.structure, run.decays, run.fit)
+    error = None if base.is_explained else find_sensor_error(run.model)
+    if error is None:
+        return ()
+    (wrong,) = correct_beside_terms(base, error)
+    return (wrong,) if not wholly or base.refit(wrong.correction, run.fit).is_explained else ()
 
 
 def _suspected_sensor(search: ModelSearch) -> tuple[Fault, ...]:

@@ -1,4 +1,4 @@
-"""Corrections of what was found beside nonlinear terms: a sensor in error, drops that are unlike all others."""
+"""Corrections of what was found beside nonlinear terms or on pads: a sensor in error, drops that are unlike all others."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from sprung.faults.candidate_fit import CandidateFit
 from sprung.faults.channel.delay import delay_fault
 from sprung.faults.channel.gain import gain_fault
 from sprung.faults.channel.position import position_fault
+from sprung.faults.channel.sign import sign_fault
 from sprung.faults.correction import (
     Correction,
     advance_channel,
@@ -101,6 +102,8 @@ def _corrected(
         return delay_fault(sensor.channel, sizes["delay"]), whole, {"delay_std": sample / 2}
     if "gain" in sizes:
         gain = 1.0 + sizes["gain"]
+        if gain < 0:
+            return sign_fault(sensor.channel), scale_channel(channel, -1.0), {"gain_std": sensor.gain_std}
         return gain_fault(sensor.channel, gain), scale_channel(channel, 1 / gain), {"gain_std": sensor.gain_std}
     x, y, z = sensor.position or (0.0, 0.0, 0.0)
     x, y = x + sizes.get("x", 0.0), y + sizes.get("y", 0.0)

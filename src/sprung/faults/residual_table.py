@@ -124,9 +124,10 @@ def residual_table(recordings: Sequence[str], decays: Sequence[FreeDecay], optim
     """
     left = optimum.residual_sums
     residual, counts = np.zeros((len(recordings), left.shape[1])), np.zeros((len(recordings), left.shape[1]))
-    for decay, of_decay in zip(decays, left, strict=True):
+    # Of a record on pads not its samples count but its lines.
+    for decay, of_decay, numbers in zip(decays, left, optimum.problem.objective.observations, strict=True):
         row = recordings.index(decay.file)
-        counts[row] = decay.usable * decay.samples
+        counts[row] = decay.usable * numbers
         residual[row] = np.where(decay.usable, of_decay, 0.0)
     uncertainties = sum(map(is_of_sensor, optimum.names))
     return ResidualTable(residual, counts, optimum.sensor_penalty, uncertainties)

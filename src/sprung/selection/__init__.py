@@ -18,7 +18,13 @@ from sprung.selection.nonlinear import select_nonlinear_terms
 from sprung.selection.ordinary_vehicle import is_ordinary, may_be_astray, or_from_ordinary_vehicle
 from sprung.selection.scoring import WORTH_A_FIT, score_terms
 from sprung.selection.search import ModelSearch, SelectionStep
-from sprung.selection.sensor_errors import FAR, SensorError, furthest_from_stated, sensor_error_of_fit
+from sprung.selection.sensor_errors import (
+    FAR,
+    SensorError,
+    find_sensor_error,
+    furthest_from_stated,
+    sensor_error_of_fit,
+)
 from sprung.selection.several_vehicles import Groups, divide_drops
 from sprung.selection.starts import fit_structure
 from sprung.selection.step_length import with_short_steps
@@ -59,6 +65,7 @@ __all__ = [
     "describe_terms",
     "divide_drops",
     "final_tolerance",
+    "find_sensor_error",
     "fit_flexible_bodies",
     "fit_forced_terms",
     "fit_requested_terms",

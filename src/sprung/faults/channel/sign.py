@@ -14,12 +14,17 @@ def sign(prediction: ChannelPrediction) -> Iterator[ChannelHypothesis]:
     """Invert the polarity, unless gravity at rest shows that it is right."""
     if not prediction.gravity_allows(-1.0):
         return
-    what = "the polarity is inverted relative to the other channels"
-    do = "State the sensor the other way up in the campaign file, or turn it over."
-    fault = Fault("sign", prediction.sensor.channel, what, do)
+    fault = sign_fault(prediction.sensor.channel)
     yield ChannelHypothesis(
         "sign",
         lambda *_: fault,
         lambda: ((), prediction.residual_of(-prediction.stated)),
         lambda _: scale_channel(prediction.channel, -1.0),
     )
+
+
+def sign_fault(channel: str) -> Fault:
+    """Return the fault of a channel whose polarity is inverted."""
+    what = "the polarity is inverted relative to the other channels"
+    do = "State the sensor the other way up in the campaign file, or turn it over."
+    return Fault("sign", channel, what, do)
