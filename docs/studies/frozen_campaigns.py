@@ -187,5 +187,6 @@ WANTED: Mapping[str, str] = {
         "a term has to explain a part of what is left: half-distances apart, which explain next to nothing of friction, are "
         "not taken; nothing is stated of a rejected model"
     ),
+    "rejected: two vehicles": "the drops of each vehicle are named, where nothing was",
 }
 """Campaigns of which another result than the frozen one is wanted, and why."""

@@ -141,7 +141,7 @@ def _two_vehicles(search: ModelSearch, rich: ModelStructure) -> UnlikeDrops | No
     groups = divide_partly(search)
     for group in groups or ():
         own = of_group(search, group)
-        found = fit_usual_terms(own, rich)
+        found = fit_usual_terms(own, rich, with_lost=False)
         if found is None or own.leaves_misfit(found.fit, MISFIT_LEFT):
             return None
     return None if groups is None else UnlikeDrops(groups[1], {}, groups[0])

@@ -243,7 +243,7 @@ def or_from_ordinary_vehicle(search: ModelSearch) -> ModelSearch:
     return other if other.fit.converged and other.gain_over(search) > enough else search
 
 
-def fit_usual_terms(search: ModelSearch, rich: ModelStructure) -> ModelSearch | None:
+def fit_usual_terms(search: ModelSearch, rich: ModelStructure, *, with_lost: bool = True) -> ModelSearch | None:
     """Fit a structure from an ordinary vehicle whose terms have their usual sizes, to the beginnings of the decays.
 
     A fit of everything at once may lose friction, of one axle even, and what resembles it then makes up for it: it begins
@@ -255,6 +255,8 @@ def fit_usual_terms(search: ModelSearch, rich: ModelStructure) -> ModelSearch | 
         The present model and its fit.
     rich
         What is fitted.
+    with_lost
+        Whether terms that were lost are tried once more.
 
     Returns
     -------
@@ -272,7 +274,7 @@ def fit_usual_terms(search: ModelSearch, rich: ModelStructure) -> ModelSearch | 
     start = replace(search, structure=rich, fit=at_start)
     best = _fit_beginnings(search, start, rich)
     lost = {term for term in rich.terms if TERMS[term].resembles_others and (best is None or best.is_lost(term))}
-    if lost:
+    if lost and with_lost:
         without = start.without(*lost)
         other = _fit_beginnings(search, start, without) if best is None else _refit_beginnings(search, best, without)
         again = None if other is None else _fit_again(search, other, rich, lost)
