@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from injuries import Change, changed
 from numpy.typing import NDArray
 from parts_of_a_vehicle import PITCH_PLANE, QUARTER_CAR
 
@@ -93,23 +94,20 @@ def test_forces_known_to_one_percent_give_the_scale_to_half_of_that() -> None:
 def test_a_force_that_reads_ten_percent_too_little_is_corrected() -> None:
     """Gains are stated to 1 %, to which that of the corrected channel is known as well."""
     made = sprung.simulate(TABLE_1_CAR, drops=[PADS], noise=NOISE, seed=1, pads=SHORT, sensor_errors=True)
-    result = sprung.identify(changed(made, "force_rl", lambda record: 0.9 * record), extras=(), tracks="shared")
+    result = sprung.identify(spoilt(made, "force_rl", lambda record: 0.9 * record), extras=(), tracks="shared")
     assert [(fault.code, fault.where) for fault in result.faults] == [("gain", "force_rl")]
     mass = result.parameters["m_s"]
     assert mass.std == pytest.approx(0.006 * 1380, rel=0.2)
     assert mass.value == pytest.approx(1380, abs=3 * (mass.std or 0))
 
 
-def changed(campaign: Campaign, channel: str, change: Callable[[Real], Real]) -> Campaign:
+def spoilt(campaign: Campaign, channel: str, change: Change) -> Campaign:
     """Return a campaign of which one channel recorded something else."""
-    is_other = np.array([sensor.channel == channel for sensor in campaign.sensors])[:, None]
-    return campaign.with_recordings(
-        [replace(one, values=np.where(is_other, change(one.values), one.values)) for one in campaign.recordings]
-    )
+    return changed(campaign, [[sensor.channel for sensor in campaign.sensors].index(channel)], change)
 
 
 def late(record: Real) -> Real:
-    return np.roll(record, 3, axis=1)
+    return np.roll(record, 3)
 
 
 @pytest.mark.parametrize(
@@ -124,10 +122,10 @@ def late(record: Real) -> Real:
         ("pad_fr", late, "late"),
     ],
 )
-def test_one_sensor_at_fault_is_named_and_corrected(channel: str, change: Callable[[Real], Real], code: str) -> None:
+def test_one_sensor_at_fault_is_named_and_corrected(channel: str, change: Change, code: str) -> None:
     """What is predicted of free decays does not hold on pads: such campaigns were rejected after a minute without a reason."""
     made = sprung.simulate(TABLE_1_CAR, drops=[PADS], noise=NOISE, seed=1, pads=SHORT)
-    result = sprung.identify(changed(made, channel, change))
+    result = sprung.identify(spoilt(made, channel, change))
     assert [(fault.code, fault.where) for fault in result.faults] == [(code, channel)]
     assert (result.verdict.state, result.fit.model) == ("accept", ())
     assert max(errors_of(result, TABLE_1_CAR).values()) < 5e-3

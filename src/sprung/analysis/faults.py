@@ -121,7 +121,7 @@ def _sensor_of_fit(run: Analysis) -> tuple[Hypothesis, ...]:
 
 
 def _sensor_on_pads(run: Analysis, *, wholly: bool) -> tuple[Hypothesis, ...]:
-    """Return the one sensor that stands out in a misfit on pads, with what corrects that; as far as it explains it wholly.
+    """Return the one sensor that stands out in a misfit on pads, with what corrects that; or only one that explains it wholly.
 
     Pads drive the vehicle all the time, so that no channel is predicted from where the vehicle was at first: which sensor it is
     follows from what the recordings alone would say of each.

@@ -109,9 +109,9 @@ def decide_verdict(
     -------
     Verdict
     """
-    relative, over_noise = model_error
     if refuting:  # then what the fit to all drops says is of no vehicle
         return Verdict("reject", tuple(refuting))
+    relative, over_noise = model_error
     worst = int(np.argmax(relative))
     size = float(relative[worst])
     unexplained = list(_unexplained(size, float(over_noise[worst]), channels[worst]))

@@ -23,7 +23,7 @@ from sprung.selection.ordinary_vehicle import (
     is_ordinary,
 )
 from sprung.selection.search import ModelSearch
-from sprung.selection.several_vehicles import divide_partly, of_group
+from sprung.selection.several_vehicles import divide_drops, of_group
 from sprung.selection.starts import start_variants
 from sprung.selection.stepwise import select_terms_beside
 from sprung.selection.structure import ModelStructure
@@ -138,7 +138,7 @@ def select_from_ordinary_vehicle(search: ModelSearch, plain: ModelStructure) -> 
 def _two_vehicles(search: ModelSearch, rich: ModelStructure) -> UnlikeDrops | None:
     """Return the drops of another vehicle, where two with every usual term explain what one does not."""
     search.progress(Step("dividing the drops between two vehicles"))
-    groups = divide_partly(search)
+    groups = divide_drops(search, partly=True)
     for group in groups or ():
         own = of_group(search, group)
         found = fit_usual_terms(own, rich, with_lost=False)

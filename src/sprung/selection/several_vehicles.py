@@ -10,13 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.estimation import FitResult
-from sprung.preprocess import FreeDecay
 from sprung.selection.search import ModelSearch
 
 Groups: TypeAlias = tuple[tuple[str, ...], tuple[str, ...]]
 """The names of the recordings of two vehicles; the first one has the first of all."""
 
-FEWEST = 3
+_FEWEST = 3
 """Drops of each vehicle at the least: fewer are single mishaps, which are looked for drop by drop."""
 
 _WITHIN = 0.5
@@ -28,7 +27,7 @@ _BETWEEN, _PARTLY = 0.1, 0.75
 _ROUNDS = 4
 
 
-def divide_drops(search: ModelSearch) -> Groups | None:
+def divide_drops(search: ModelSearch, *, partly: bool = False) -> Groups | None:
     """Divide the drops between two vehicles, if that explains what one leaves.
 
     What a model lacks shows within each drop above all, while other vehicles show between them. A nonlinear vehicle may seem
@@ -38,29 +37,16 @@ def divide_drops(search: ModelSearch) -> Groups | None:
     ----------
     search
         A linear model and its fit, which does not explain the recordings.
+    partly
+        Whether the vehicles may have more than the model: what it leaves within drops counts for nothing, and whether two
+        explain the recordings is to be confirmed.
 
     Returns
     -------
     tuple or None
-        None where two vehicles explain much less than a vehicle for each drop does.
+        None where two vehicles explain much less than a vehicle for each drop does; partly, hardly more than one.
     """
-    return _divided(search, _WITHIN, _BETWEEN)
-
-
-def divide_partly(search: ModelSearch) -> Groups | None:
-    """Divide the drops between two vehicles that are not linear: what that leaves within drops counts for nothing.
-
-    Parameters
-    ----------
-    search
-        A linear model and its fit, which does not explain the recordings.
-
-    Returns
-    -------
-    tuple or None
-        None where two vehicles explain hardly more than one. Whether they explain the recordings is to be confirmed.
-    """
-    return _divided(search, np.inf, _PARTLY)
+    return _divided(search, np.inf, _PARTLY) if partly else _divided(search, _WITHIN, _BETWEEN)
 
 
 def of_group(search: ModelSearch, files: Collection[str]) -> ModelSearch:
@@ -84,9 +70,9 @@ def of_group(search: ModelSearch, files: Collection[str]) -> ModelSearch:
 def _divided(search: ModelSearch, most_within: float, most_between: float) -> Groups | None:
     """Divide the drops, given the most that may be left within them and between those of a vehicle, as parts."""
     files = [decay.file for decay in search.decays]
-    if len(files) < 2 * FEWEST or not (search.sensor_noise > 0).any():
+    if len(files) < 2 * _FEWEST or not (search.sensor_noise > 0).any():
         return None
-    misfit = _misfit(search, search.fit, search.decays)
+    misfit = _misfit(search, search.fit)
     within = _left_by_each(search, files, most_within * misfit)
     between = misfit - sum(within.values())
     if between < max(1 - most_within, 0.0) * misfit:
@@ -94,12 +80,12 @@ def _divided(search: ModelSearch, most_within: float, most_between: float) -> Gr
     first = _alike_the_first(search, within)
     for _ in range(_ROUNDS):
         second = [file for file in files if file not in first]
-        if min(len(first), len(second)) < FEWEST:
+        if min(len(first), len(second)) < _FEWEST:
             return None
         vehicles = [of_group(search, group) for group in (first, second)]
         nearer = [file for file, is_second in zip(files, _nearest(search, vehicles), strict=True) if not is_second]
         if nearer == first:
-            left = sum(_misfit(search, one.fit, one.decays) for one in vehicles) - sum(within.values())
+            left = sum(_misfit(search, one.fit) for one in vehicles) - sum(within.values())
             loads = [{decay.load for decay in one.decays} for one in vehicles]
             is_divided = left <= most_between * between and set.intersection(*loads)
             return (tuple(first), tuple(second)) if is_divided else None
@@ -107,10 +93,10 @@ def _divided(search: ModelSearch, most_within: float, most_between: float) -> Gr
     return None
 
 
-def _misfit(search: ModelSearch, fit: FitResult, decays: Sequence[FreeDecay]) -> float:
+def _misfit(search: ModelSearch, fit: FitResult) -> float:
     """Return what a fit of some drops leaves beyond the noise of the sensors, in twice the log-likelihood."""
     known = search.sensor_noise > 0
-    counts = np.array([decay.usable[known] * decay.samples for decay in decays], dtype=float)
+    counts = fit.problem.objective.observations[:, known]
     variances = fit.residual_sums[:, known] / np.maximum(counts, 1.0)
     return float(np.sum(counts * np.log(np.maximum(variances / search.sensor_noise[known], 1.0))))
 
@@ -127,8 +113,7 @@ def _left_by_each(search: ModelSearch, files: Sequence[str], most: float) -> dic
 
 def _left_in(search: ModelSearch, files: Collection[str]) -> float:
     """Return the misfit that a vehicle of their own leaves in some drops."""
-    own = of_group(search, files)
-    return _misfit(search, own.fit, own.decays)
+    return _misfit(search, of_group(search, files).fit)
 
 
 def _alike_the_first(search: ModelSearch, within: Mapping[str, float]) -> list[str]:
