@@ -13,6 +13,9 @@ from real_car_tests import RATES, Judged, draw_other_test, page
 from real_kinds import KINDS
 from real_outcomes import Outcome, examine
 
+from sprung.analysis.analysis import Analysis, AnalysisOptions
+from sprung.analysis.stages import STAGES
+
 LIMIT = 300.0
 
 
@@ -133,6 +136,38 @@ def test_no_person_has_a_mass_below_zero() -> None:
     """From people in the middle the fit led to -58 kg on the left: the roll inertia was 7 standard errors off."""
     outcome = identified(309)
     assert (outcome.verdict, {*outcome.model}, outcome.faults) == ("accept", {"occupants", "uneven-occupants"}, ())
+    assert outcome.worst_scaled[0] < 4
+
+
+@pytest.mark.slow
+def test_every_vehicle_turns_by_finite_angles_though_they_hardly_show() -> None:
+    """No roll drops and 0.05 m/s² of noise: they gain 16 of 17 that a discovery needs; I_yy was 6 std off."""
+    outcome = identified(389)
+    assert (outcome.verdict, {*outcome.model}, outcome.faults) == ("accept", {"anti-roll", "gravity"}, ())
+    assert outcome.worst_scaled[0] < 4
+
+
+@pytest.mark.slow
+def test_no_fault_is_evident_that_leaves_the_beginnings() -> None:
+    """Of a car with a knee one late wheel sensor and one behind a low-pass explained all but the first 0.3 s: rejected."""
+    ((campaign, _),) = record([draw_other_test(407)])
+    run = Analysis.start(campaign, AnalysisOptions(), STAGES[:4]).run()
+    assert any("do not explain the beginnings" in step.why for step in run.trace)
+    assert run.corrected == ()
+
+
+@pytest.mark.long
+def test_a_knee_is_found_where_two_sensors_seemed_to_be_at_fault() -> None:
+    outcome = identified(407)
+    assert (outcome.verdict, {*outcome.model}, outcome.faults) == ("accept", {"rebound", "damper-curve"}, ())
+    assert outcome.worst_scaled[0] < 4
+
+
+@pytest.mark.long
+def test_a_nonlinear_fit_comes_back_from_wheels_that_are_nowhere() -> None:
+    """Friction and air springs, no roll drops: anti-roll bars and a half-distance of 5 cm remained; 5 standard errors off."""
+    outcome = identified(358)
+    assert (outcome.verdict, {*outcome.model}, outcome.faults) == ("accept", {"friction", "air"}, ())
     assert outcome.worst_scaled[0] < 4
 
 

@@ -12,7 +12,6 @@ from scipy.signal import butter, sosfilt
 
 import sprung
 from sprung.campaign import Recording
-from sprung.preprocess.decimation import decimate
 from sprung.preprocess.splice import find_splice, join_splices
 from sprung.vehicle import TABLE_1_CAR
 
@@ -75,29 +74,3 @@ def test_a_lost_channel_does_not_hide_a_splice() -> None:
     joined = join_splices([replace(recording, values=values)])[0]
     assert np.isnan(joined.values[2]).all()
     assert not np.isnan(joined.values[[0, 1, 3]]).any()
-
-
-def test_many_samples_are_thinned_out_without_delay() -> None:
-    recording = spliced(0, PLACES[0])
-    clean = replace(recording, values=motion(0))
-    thin = decimate(clean)
-    assert thin.rate == 1000.0
-    assert thin.values == pytest.approx(clean.values[:, ::5], abs=2e-4)
-    assert thin.values[:, 400:] == pytest.approx(clean.values[:, ::5][:, 400:], abs=1e-6)
-    assert "every 5th sample" in thin.history[-1]
-    slow = sprung.simulate(TABLE_1_CAR, rate=2500).recordings[0]
-    assert decimate(slow) is slow
-
-
-def test_a_campaign_that_is_sampled_fast_gives_what_it_gives_at_a_usual_rate() -> None:
-    slow, fast = (
-        sprung.identify(
-            sprung.simulate(TABLE_1_CAR, rate=rate, noise=noise, seed=1, known={"total_mass": 1541.0}), extras=[]
-        )
-        for rate, noise in ((1000, 0.02), (5000, 0.02 * np.sqrt(5)))
-    )
-    assert fast.drops[0].rate == 1000.0
-    for name, one in fast.parameters.items():
-        other = slow.parameters[name]
-        assert one.std == pytest.approx(other.std, rel=0.1)
-        assert abs((one.value or 0.0) - (other.value or 0.0)) < 5 * (other.std or 0.0)

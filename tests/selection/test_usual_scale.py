@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 import sprung
 from sprung.estimation import fit_linear
 from sprung.preprocess import prepare
-from sprung.selection import ModelSearch, choose_structure
+from sprung.progress import silent
+from sprung.selection import ModelSearch, choose_structure, fit_structure, is_ordinary, or_from_ordinary_vehicle
 from sprung.selection.ordinary_vehicle import ordinary_vehicle, with_usual_scale
 from sprung.vehicle import TABLE_1_CAR, parameter_of
 
@@ -46,3 +49,20 @@ def test_a_vehicle_that_was_weighed_keeps_what_the_scales_say() -> None:
     search = at(1.0, weighed=9000.0)
     assert search.fit.parameters["m_s"] > 5000
     assert with_usual_scale(search) == search.fit.parameters
+
+
+def test_a_nonlinear_fit_whose_wheels_are_nowhere_begins_with_usual_half_distances_again() -> None:
+    """From there it ends where the simulated vehicle is, within four standard errors of a drop to one side and one forward."""
+    car = replace(TABLE_1_CAR, p_f=6.0, p_r=6.0)
+    campaign = sprung.simulate(car, drops=DROPS, noise=0.02, seed=1, rate=250.0)
+    structure, decays = choose_structure(campaign, "shared", ("progressive",)), prepare(campaign).decays
+    linear = structure.with_terms(())
+    fit = fit_linear(decays, linear.linear_models, campaign.sensors, linear.known)
+    start = {**fit.parameters, "p_f": 5.0, "p_r": 5.0, "t_f": 0.04}
+    lost = fit_structure(structure, decays, fit, 0.01, silent, most=0, start=start)
+    search = ModelSearch(structure, lost, decays)
+    assert search.structure.is_time_stepped
+    assert not is_ordinary(search)
+    found = or_from_ordinary_vehicle(search)
+    assert is_ordinary(found)
+    assert found.fit.parameters["t_f"] == pytest.approx(car.t_f, rel=0.03)

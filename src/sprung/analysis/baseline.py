@@ -66,7 +66,39 @@ def _best_start(run: Analysis, search: ModelSearch, progress: Progress) -> Model
 
 
 def _fit_corrected(run: Analysis, structure: ModelStructure, progress: Progress) -> Analysis:
-    """Fit the corrected campaign with the model and from the fit by which its correction was confirmed.
+    """Fit the corrected campaign with the model and from the fit by which its correction was confirmed."""
+    found = run
+    # Where a tyre seems to be on the ground too early, the decays begin where the correction explained them; but where a term
+    # explains what is left, it shows in the samples before.
+    for decays in (run.prepared.decays, _begun_as(run.corrected[-1].candidate.decays, run.prepared.decays)):
+        found = replace(run, search=_near_confirmed(run, structure, decays, progress), fits=found.fits)
+        # What a model leaves that lacks something says nothing of the numbers of a correction.
+        is_noise = is_explained(found.decays, found.fit)
+        found = converged(settle_corrections(found) if is_noise else found, progress)
+        if is_explained(found.decays, found.fit) or explaining_term(found, "misfit") is not None:
+            break
+    return found
+
+
+def explains_beginnings(run: Analysis, progress: Progress) -> bool:
+    """Return whether corrections explain the decays from where they begin in the corrected recordings, but for a linear term.
+
+    Parameters
+    ----------
+    run
+        Restarted with the corrections and preprocessed.
+    progress
+        Called with each step that begins.
+    """
+    _, structure = structures(run)
+    found = replace(run, search=_near_confirmed(run, structure, run.prepared.decays, progress))
+    return is_explained(found.decays, found.fit) or explaining_term(found, "misfit") is not None
+
+
+def _near_confirmed(
+    run: Analysis, structure: ModelStructure, decays: Sequence[FreeDecay], progress: Progress
+) -> ModelSearch:
+    """Fit decays of the corrected campaign by one step from the fit by which its correction was confirmed.
 
     Terms that were in that model stay if its fit needs them. One Gauss-Newton step tells from where on the tyres are on the
     ground, and which numbers the corrections then have.
@@ -79,19 +111,9 @@ def _fit_corrected(run: Analysis, structure: ModelStructure, progress: Progress)
     smaller = larger
     for term in larger.selected:
         smaller = smaller if term in needed else replace(smaller, structure=smaller.without(term))
-    found = run
-    # Where a tyre seems to be on the ground too early, the decays begin where the correction explained them; but where a term
-    # explains what is left, it shows in the samples before.
-    for decays in (run.prepared.decays, _begun_as(candidate.decays, run.prepared.decays)):
-        fit = fit_structure(smaller.structure, decays, candidate.fit, NEAR, progress, most=1)
-        near = from_contact(ModelSearch(smaller.structure, fit, decays, (), progress), most=1)
-        search = near.recorded(needed, fitted=True, taken=True)
-        found = replace(run, search=search, fits=found.fits)
-        # What a model leaves that lacks something says nothing of the numbers of a correction.
-        found = converged(settle_corrections(found) if is_explained(near.decays, near.fit) else found, progress)
-        if is_explained(found.decays, found.fit) or explaining_term(found, "misfit") is not None:
-            break
-    return found
+    fit = fit_structure(smaller.structure, decays, candidate.fit, NEAR, progress, most=1)
+    near = from_contact(ModelSearch(smaller.structure, fit, decays, (), progress), most=1)
+    return near.recorded(needed, fitted=True, taken=True)
 
 
 def _begun_as(fitted: Sequence[FreeDecay], decays: Sequence[FreeDecay]) -> tuple[FreeDecay, ...]:

@@ -6,10 +6,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from sprung.analysis.analysis import MOST_RESTARTS, Analysis
-from sprung.analysis.baseline import converged
+from sprung.analysis.baseline import converged, explains_beginnings
 from sprung.analysis.correcting import restart_corrected
 from sprung.analysis.first_term import explaining_term, rivalling_term
 from sprung.analysis.on_pads import has_pads
+from sprung.analysis.preparation import preprocess
 from sprung.analysis.settling import settle_corrections
 from sprung.analysis.terms import flexible_body_given_up, select_finite_rotation
 from sprung.errors import Fault
@@ -82,7 +83,16 @@ def _restart_without_rival(run: Analysis, progress: Progress) -> Analysis:
     rival = rivalling_term(run) or _body_given_up(run, progress)
     if rival is not None:
         return run.noted("isolate_evident_faults", f"{rival[0]} is tried before anything is corrected", rival[1])
-    return restart_corrected(run, run.found, "isolate_evident_faults")
+    again = restart_corrected(run, run.found, "isolate_evident_faults")
+    last = run.found[-1].candidate
+    if run.without_wheels is None or not last.is_explained:
+        return again
+    # What a model lacks is largest when the wheels have just landed: later, healthy sensors may seem to explain it.
+    corrected = preprocess(again, progress)
+    if explains_beginnings(corrected, progress):
+        return replace(again, preparation=corrected.preparation, preparations=corrected.preparations)
+    what, why = "terms are tried before anything is corrected", "the faults do not explain the beginnings of the decays"
+    return run.noted("isolate_evident_faults", what, why)
 
 
 def _body_given_up(run: Analysis, progress: Progress) -> tuple[str, str] | None:

@@ -13,6 +13,7 @@ from sprung.faults import CandidateFit, consistency_of, correct_beside_terms
 from sprung.progress import Progress
 from sprung.selection import (
     FLEXIBLE_BODIES,
+    REQUIRED_OF_ROTATION,
     TERMS,
     ModelSearch,
     SelectionStep,
@@ -21,6 +22,7 @@ from sprung.selection import (
     fit_forced_terms,
     from_contact,
     is_likelier,
+    is_ordinary,
     leave_out_refused,
     leave_out_unneeded,
     may_be_astray,
@@ -121,7 +123,7 @@ def select_finite_rotation(run: Analysis, progress: Progress) -> Analysis:
     gain = search.gain_over(before)
     run = _with_search(replace(run, fits=run.fits + 1), run.model, search, "select_finite_rotation")
     what = "finite rotation and the sinking of the body under its loads: included"
-    return run.noted("select_finite_rotation", what, f"Δ2lnL = {gain:.0f}, required {search.required_of_switch:.0f}")
+    return run.noted("select_finite_rotation", what, f"Δ2lnL = {gain:.0f}, required {REQUIRED_OF_ROTATION:.0f}")
 
 
 def select_nonlinear_terms(run: Analysis, progress: Progress) -> Analysis:
@@ -154,6 +156,8 @@ def select_nonlinear_terms(run: Analysis, progress: Progress) -> Analysis:
                 return replace(run, isolated=(run.fit, tuple(wrong)))
             return restart_corrected(run, wrong, "select_nonlinear_terms")
     if search.structure.names != before.structure.names:
+        # A term that explained what another one makes may have led the fit away, to wheels that are nowhere.
+        search = search if is_ordinary(search) else or_from_ordinary_vehicle(search)
         # The search compares fits to beginnings, or to a standard error: at the optimum a term may turn out to be nothing.
         last = from_contact(search)
         needed, _ = leave_out_unneeded(last, run.model)

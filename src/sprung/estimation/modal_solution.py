@@ -23,6 +23,9 @@ _CLOSE = 1e-6
 _BACKWARD = 30.0
 """Powers of e by which a motion may grow on its way back in time: before the start of a record, it is none of a vehicle."""
 
+_FORWARD = 300.0
+"""The same by which it may fade: less is nothing, by which no shape can be divided."""
+
 
 @dataclass(frozen=True, eq=False)
 class ModalSolution:
@@ -130,7 +133,7 @@ def turns(exponents: Complex) -> Complex:
     exponents
         λt.
     """
-    return np.asarray(np.exp(np.minimum(exponents.real, _BACKWARD) + 1j * exponents.imag))
+    return np.asarray(np.exp(np.clip(exponents.real, -_FORWARD, _BACKWARD) + 1j * exponents.imag))
 
 
 def differentiate_modes(

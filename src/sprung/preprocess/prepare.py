@@ -50,7 +50,7 @@ class Prepared(NamedTuple):
     observations: tuple[DropObservation, ...] = ()
 
 
-def prepare(campaign: Campaign, progress: Progress = silent) -> Prepared:
+def prepare(campaign: Campaign, progress: Progress = silent, *, full_rate: bool = False) -> Prepared:
     """Correct the recordings of a campaign and extract their :term:`free decays <free decay>`.
 
     Parameters
@@ -59,13 +59,15 @@ def prepare(campaign: Campaign, progress: Progress = silent) -> Prepared:
         The campaign.
     progress
         Called with each recording that is begun, in three rounds.
+    full_rate
+        Whether recordings that were sampled very fast keep all of their samples.
 
     Returns
     -------
     Prepared
     """
     stage = "looking for spikes in the recordings"
-    whole = [decimate(recording) for recording in join_splices(campaign.recordings)]
+    whole = [recording if full_rate else decimate(recording) for recording in join_splices(campaign.recordings)]
     despiked = [remove_spikes(recording) for recording in counted(progress, stage, tuple(whole))]
     recordings = exclude_copies([align_loggers(recording) for recording, _ in despiked], campaign.drops)
     recordings = [

@@ -9,7 +9,7 @@ from sprung.selection.backward_elimination import (
 from sprung.selection.contact import begin_no_later, final_tolerance, from_contact, is_likelier
 from sprung.selection.description import TermDescription, describe_terms
 from sprung.selection.error_budget import FALSE_ALARM_SHARE, required_gain
-from sprung.selection.finite_rotation import select_finite_rotation
+from sprung.selection.finite_rotation import REQUIRED_OF_ROTATION, select_finite_rotation
 from sprung.selection.from_ordinary_vehicle import fit_flexible_bodies, select_flexible_body
 from sprung.selection.linear_terms import ENGINE, FLEXIBLE_BODIES, SEPARATE_TRACKS, STARTED_LATER
 from sprung.selection.low_pass import confirm_low_pass, corner_of, select_low_pass
@@ -46,6 +46,7 @@ __all__ = [
     "FALSE_ALARM_SHARE",
     "FAR",
     "FLEXIBLE_BODIES",
+    "REQUIRED_OF_ROTATION",
     "SEPARATE_TRACKS",
     "STARTED_LATER",
     "TERMS",

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from sprung.estimation import NEAR, FitResult
 from sprung.preprocess import FreeDecay
+from sprung.selection.error_budget import required_gain
 from sprung.selection.linear_terms import GRAVITY
 from sprung.selection.ordinary_vehicle import is_ordinary
 from sprung.selection.search import ModelSearch
@@ -41,6 +42,10 @@ all samples up to which that saves anything."""
 
 _FIRST_ITERATIONS = 2
 """Iterations after which there has to be a gain: the optimum moves by a few standard errors only."""
+
+REQUIRED_OF_ROTATION = required_gain(0, 1, 1.0)
+"""Gain in twice the log-likelihood that is required of finite rotation. Every vehicle turns so: what is no discovery has only
+to be more than chance."""
 
 _FEW, _BODY = 4, 2 * np.pi * 1.5
 """Drops that are enough for that, and usual own frequency of the body, 1/s."""
@@ -106,7 +111,7 @@ def _select(search: ModelSearch, plain: ModelStructure) -> ModelSearch:
         tried += [_corrected(search, recorded, one, most=_FIRST_ITERATIONS) for one in others]
         likeliest = max(range(len(tried)), key=lambda i: tried[i].fit.loglikelihood)
         first, assumption = tried[likeliest], (plainest, *others)[likeliest]
-    if first.gain_over(search) <= search.required_of_switch:
+    if first.gain_over(search) <= REQUIRED_OF_ROTATION:
         return search
     turned = _without_unneeded(_corrected(first, recorded, assumption), recorded, assumption)
     if plain.names != structure.names and turned.is_overdispersed:
@@ -114,7 +119,7 @@ def _select(search: ModelSearch, plain: ModelStructure) -> ModelSearch:
         again = select_linear_terms(replace(turned.refit(base), steps=search.steps))
         anew = _corrected(again, recorded, assumption)
         turned = anew if anew.delta_bic(turned) > 0 else replace(turned, steps=anew.steps)
-    return turned if turned.gain_over(search) > search.required_of_switch else search
+    return turned if turned.gain_over(search) > REQUIRED_OF_ROTATION else search
 
 
 def _drops_that_turn_most(fit: FitResult) -> list[int]:

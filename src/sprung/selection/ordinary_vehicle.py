@@ -13,7 +13,7 @@ from sprung.estimation import NEAR, UsualValue, VehicleSize, fit_linear, usual_v
 from sprung.selection.error_budget import MISFIT_LEFT_AT_FIRST
 from sprung.selection.linear_terms import FLEXIBLE_BODIES
 from sprung.selection.search import ModelSearch
-from sprung.selection.starts import start_values
+from sprung.selection.starts import fit_structure, start_values
 from sprung.selection.structure import ModelStructure
 from sprung.selection.terms import TERMS
 from sprung.uncertainty import KnownValue
@@ -231,16 +231,34 @@ def or_from_ordinary_vehicle(search: ModelSearch) -> ModelSearch:
     Parameters
     ----------
     search
-        A linear model and its fit.
+        A model and its fit.
 
     Returns
     -------
     ModelSearch
         Of the same model.
     """
-    other = fit_from_ordinary_vehicle(search, search.structure)
+    is_stepped = search.structure.is_time_stepped
+    other = _refit_from_usual_values(search) if is_stepped else fit_from_ordinary_vehicle(search, search.structure)
     enough = 0.0 if is_ordinary(other) and not is_ordinary(search) else search.required_of_switch
     return other if other.fit.converged and other.gain_over(search) > enough else search
+
+
+def _refit_from_usual_values(search: ModelSearch) -> ModelSearch:
+    """Fit a nonlinear model again from where its fit has ended, parameters that no vehicle has from usual values."""
+    own, (_, usual) = search.fit.parameters, ordinary_vehicle(search.structure.with_terms(()))
+    start = own | {name: size.value for name, size in usual.items() if name in own and not _is_near(own[name], size)}
+    first = fit_structure(
+        search.structure,
+        search.decays,
+        search.fit,
+        NEAR,
+        search.progress,
+        beginning_only=True,
+        most=_FIRST_ITERATIONS,
+        start=start,
+    )
+    return replace(search, fit=first).refit(search.structure)
 
 
 def fit_usual_terms(search: ModelSearch, rich: ModelStructure, *, with_lost: bool = True) -> ModelSearch | None:

@@ -36,7 +36,11 @@ def with_short_steps(search: ModelSearch) -> ModelSearch:
     for _ in range(_HALVINGS if search.structure.is_time_stepped else 0):
         structure = replace(search.structure, step_part=search.structure.step_part / 2)
         there = search.refit(structure, most=1, enough=np.inf)  # an evaluation
-        if there.fit.expected_shift <= _SHIFT * np.sqrt(search.overdispersion):
+        shift = there.fit.expected_shift
+        if shift <= _SHIFT * np.sqrt(search.overdispersion):
             break
         search = there.refit(structure, enough=final_tolerance(there))
+        # The error of steps falls with their length at least: halved once more, they move half as much at the most.
+        if shift / 2 <= _SHIFT * np.sqrt(search.overdispersion):
+            break
     return search
