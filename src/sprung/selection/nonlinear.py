@@ -92,6 +92,10 @@ def _searches(
     search: ModelSearch, plain: ModelStructure, terms: Sequence[str], ranked: Sequence[str]
 ) -> Iterator[SearchFromBase]:
     """Yield the searches from every base, the simplest first."""
+    # A part that vibrates by itself is nothing that only took up some of a nonlinear motion.
+    has_part = any(TERMS[term].explains_all for term in search.selected)
+    if ranked and has_part:
+        yield partial(_from_base, search, ranked)
     found = search.structure
     plain = replace(
         plain,
@@ -107,7 +111,7 @@ def _searches(
     if search.is_misfit_large:
         yield partial(_with_law_of_dampers, search, plain)
         yield partial(_with_usual_terms, search, plain)
-    if ranked and not is_plain:
+    if ranked and not (is_plain or has_part):
         yield partial(_from_base, search, ranked)
     # A linear fit that has gone astray for the sake of friction, small motions' friction above all, shows no score of it.
     hidden = [term for term in search.open_terms(tuple(TERMS)) if TERMS[term].resembles_others and term not in ranked]
