@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import pytest
 
 import sprung
@@ -53,7 +51,7 @@ def test_a_vehicle_that_was_weighed_keeps_what_the_scales_say() -> None:
 
 def test_a_nonlinear_fit_whose_wheels_are_nowhere_begins_with_usual_half_distances_again() -> None:
     """From there it ends where the simulated vehicle is, within four standard errors of a drop to one side and one forward."""
-    car = replace(TABLE_1_CAR, p_f=6.0, p_r=6.0)
+    car = TABLE_1_CAR.with_values(p_f=6.0, p_r=6.0)
     campaign = sprung.simulate(car, drops=DROPS, noise=0.02, seed=1, rate=250.0)
     structure, decays = choose_structure(campaign, "shared", ("progressive",)), prepare(campaign).decays
     linear = structure.with_terms(())
