@@ -75,7 +75,7 @@ def _fit_corrected(run: Analysis, structure: ModelStructure, progress: Progress)
         # What a model leaves that lacks something says nothing of the numbers of a correction.
         is_noise = is_explained(found.decays, found.fit)
         found = converged(settle_corrections(found) if is_noise else found, progress)
-        if is_explained(found.decays, found.fit) or explaining_term(found, "misfit") is not None:
+        if _is_explained_but_for_a_term(found):
             break
     return found
 
@@ -91,8 +91,14 @@ def explains_beginnings(run: Analysis, progress: Progress) -> bool:
         Called with each step that begins.
     """
     _, structure = structures(run)
-    found = replace(run, search=_near_confirmed(run, structure, run.prepared.decays, progress))
-    return is_explained(found.decays, found.fit) or explaining_term(found, "misfit") is not None
+    return _is_explained_but_for_a_term(
+        replace(run, search=_near_confirmed(run, structure, run.prepared.decays, progress))
+    )
+
+
+def _is_explained_but_for_a_term(run: Analysis) -> bool:
+    """Whether the present fit leaves noise alone, or something that a linear term explains."""
+    return is_explained(run.decays, run.fit) or explaining_term(run, "misfit") is not None
 
 
 def _near_confirmed(

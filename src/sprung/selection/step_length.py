@@ -37,10 +37,15 @@ def with_short_steps(search: ModelSearch) -> ModelSearch:
         structure = replace(search.structure, step_part=search.structure.step_part / 2)
         there = search.refit(structure, most=1, enough=np.inf)  # an evaluation
         shift = there.fit.expected_shift
-        if shift <= _SHIFT * np.sqrt(search.overdispersion):
+        if shift <= _largest_shift(search):
             break
         search = there.refit(structure, enough=final_tolerance(there))
         # The error of steps falls with their length at least: halved once more, they move half as much at the most.
-        if shift / 2 <= _SHIFT * np.sqrt(search.overdispersion):
+        if shift / 2 <= _largest_shift(search):
             break
     return search
+
+
+def _largest_shift(search: ModelSearch) -> float:
+    """Return by how many standard errors of white residuals half as long steps may move a parameter."""
+    return float(_SHIFT * np.sqrt(search.overdispersion))
