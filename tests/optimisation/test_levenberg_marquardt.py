@@ -195,8 +195,12 @@ def test_no_step_is_longer_than_allowed() -> None:
 
 
 def test_steps_are_counted_and_limited() -> None:
-    found = maximise(Residuals("rosenbrock"), np.array([-1.2, 1.0]), tolerance=1e-12, damping=1e-3, most_steps=3)
-    assert (found.steps, found.converged) == (3, False)
+    """From the second point on, four are left to gain; from the third one, three thousandths."""
+    start = np.array([-1.2, 1.0])
+    found = [
+        maximise(Residuals("rosenbrock"), start, tolerance=1e-12, damping=1e-3, most_steps=most) for most in (2, 3)
+    ]
+    assert [(one.steps, one.converged) for one in found] == [(2, False), (3, True)]
 
 
 def test_who_is_told_to_stop_has_not_converged() -> None:
@@ -291,6 +295,17 @@ def test_at_a_kink_steps_that_bring_nothing_end() -> None:
     assert (idle.steps, idle.converged) == (3, True)
     busy = maximise(Promising(0.02), np.zeros(1), tolerance=0.01, damping=0.0, most_steps=50)
     assert (busy.steps, busy.converged) == (50, False)
+
+
+@pytest.mark.parametrize(("gain", "converged"), [(1e-6, True), (0.005, True), (0.02, False)])
+def test_steps_end_at_an_optimum_where_the_last_one_gained_next_to_nothing(gain: float, converged: bool) -> None:
+    """A direction that records hardly show: a hundred steps of 1e-6 each, where 1e-8 was asked, are no failure."""
+    found = maximise(Scripted([gain] * 9, [0.5 * gain] * 9), 0, tolerance=1e-8, damping=0.0, most_steps=5)
+    assert (found.steps, found.converged) == (5, converged)
+    held = maximise(
+        Scripted([gain] * 9, [0.5 * gain] * 9), 0, tolerance=1e-8, damping=0.0, most_steps=5, longest_step=1e-5
+    )
+    assert (held.steps, held.converged) == (5, False)
 
 
 def test_a_step_that_was_held_back_does_not_say_that_little_is_left() -> None:

@@ -13,12 +13,13 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.analysis.all_samples import with_all_samples
 from sprung.analysis.analysis import Analysis
 from sprung.analysis.clocks import use_clock_flights
 from sprung.analysis.on_pads import NOT_STEPPED, has_pads
 from sprung.campaign import Campaign
 from sprung.estimation import FitStatistics, uncertainty_of, weigh_statements
-from sprung.preprocess import DropObservation, FreeDecay, exclude_drops, find_flights, prepare
+from sprung.preprocess import DropObservation, FreeDecay, find_flights
 from sprung.progress import Progress, Step
 from sprung.selection import ModelSearch, final_tolerance, fit_structure, select_gravity_leakage, with_short_steps
 from sprung.vehicle import (
@@ -66,7 +67,7 @@ def use_flight(run: Analysis, progress: Progress) -> Analysis:
         run = use_clock_flights(run, progress)
     if asked is False or (asked is None and not (is_sound and is_needed(run.uncertainty))):
         return run
-    full = _at_full_rate(run, progress)
+    full = with_all_samples(run, progress)
     found = find_flights(full.decays, full.prepared.observations)
     run = replace(run, fits=full.fits, preparations=full.preparations)
     if any(found):
@@ -77,24 +78,6 @@ def use_flight(run: Analysis, progress: Progress) -> Analysis:
         run = replace(run, fits=run.fits + 1)
     remark = "the fall before the landing was tried and does not determine the parameters better"
     return replace(run, remarks=(*run.remarks, remark)).noted("use_flight", remark)
-
-
-def _at_full_rate(run: Analysis, progress: Progress) -> Analysis:
-    """Return the analysis with all samples of the recordings, where means were used: these blur how wheels land."""
-    recorded, used = run.campaign.recordings, run.prepared.observations
-    if all(own.rate == other.recording.rate for own, other in zip(recorded, used, strict=True)):
-        return run
-    prepared = exclude_drops(run.campaign, prepare(run.campaign, progress, full_rate=True), run.excluded)
-    whole = {decay.file: decay for decay in prepared.decays}
-    decays = tuple(_begun_at(whole.get(decay.file, decay), decay.start) for decay in run.decays)
-    search = replace(run.model, decays=decays, progress=progress)
-    search = search.refit(search.structure, enough=final_tolerance(search))
-    return replace(run, preparation=prepared, search=search, fits=run.fits + 1, preparations=run.preparations + 1)
-
-
-def _begun_at(decay: FreeDecay, start: float) -> FreeDecay:
-    """Let a decay begin at a time on the clock of its file, s, or where its recording first shows that it may."""
-    return decay.shifted(max(round((start - decay.start) * decay.rate), -decay.earlier.shape[1]))
 
 
 def _with_fall(run: Analysis, found: Sequence[FreeDecay | None], progress: Progress) -> Analysis | None:

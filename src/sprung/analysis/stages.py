@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from sprung.analysis.all_samples import use_all_samples
 from sprung.analysis.analysis import Analysis, AnalysisOptions, Stage
 from sprung.analysis.assessment import assess
 from sprung.analysis.baseline import fit_baseline
@@ -31,6 +32,7 @@ STAGES: tuple[Stage, ...] = (
     isolate_evident_faults,
     select_nonlinear_terms,
     isolate_faults,
+    use_all_samples,
     estimate_uncertainty,
     use_flight,
     assess,

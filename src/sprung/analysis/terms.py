@@ -71,7 +71,9 @@ def select_linear_terms(run: Analysis, progress: Progress) -> Analysis:
         moved = from_contact(search)
         search = leave_out_refused(moved)
         if search.structure.names != moved.structure.names:
-            search = from_contact(select_linear(search, refused=search.refused))
+            # What was refused beside a term that is gone may be what that one was taken for.
+            gone = [term for term in moved.selected if term not in search.selected]
+            search = from_contact(select_linear(search, refused=gone))
     return _with_search(run, before, search, "select_linear_terms")
 
 

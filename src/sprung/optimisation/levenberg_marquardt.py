@@ -20,9 +20,10 @@ Array = NDArray[Any]
 
 _LEAST_DAMPING, _MOST_DAMPING = 1e-12, 1e8
 _SLOWEST = 0.9  # ratio of successive gains that is assumed where only one is known, and at the most
-_STALLED = (
-    0.01  # expected gain, a tenth of a standard error, above which a point from which no step gains is not an optimum
-)
+_STALLED = 0.01
+"""Expected gain, a tenth of a standard error, above which a point from which no step gains, or only the last one that may be
+taken, is not an optimum."""
+
 _HELD_BACK = 3
 """Times that coordinates are held back, of which others may go too far then, before the whole step is shortened."""
 
@@ -220,7 +221,9 @@ def maximise(
         shrinks = gain * min(ratio / (1 - ratio), 1.0) < tolerance and damping < _FIRM
         if idle == _IDLE or (shrinks and not equations.is_held_back(longest_step)):
             return Maximum(point, steps + 1, converged=True)
-    return Maximum(point, most_steps, converged=False)
+    # Along what hardly shows steps may zigzag for long, each of which gains next to nothing.
+    is_near = most_steps > 0 and equations.step()[1] < _STALLED and not equations.is_held_back(longest_step)
+    return Maximum(point, most_steps, converged=is_near)
 
 
 def _gaining_step(

@@ -65,10 +65,10 @@ def select_low_pass(search: ModelSearch) -> ModelSearch:
     without = _refit_behind(search, LowPass(np.inf, _ORDER), _FIRST, beginning_only=True)
     mild_corner, usual_corner = (_with_whole_delay(search, corner) for corner in (_MILD, _USUAL))
     mild = _begin_behind(search, mild_corner)
-    if not mild.gain_over(without) > 0:
-        return search
     usual = _begin_behind(search, usual_corner) if usual_corner < mild_corner else mild
-    found = usual if usual.gain_over(without) > 0 else mild
+    found = max(mild, usual, key=lambda one: one.fit.loglikelihood)
+    if not found.gain_over(without) > 0:
+        return search
     found = found.refit(found.structure, _ITERATIONS, beginning_only=True)
     if not _is_possible(found) or not _gains_enough(found, without):
         return search

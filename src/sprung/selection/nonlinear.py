@@ -20,6 +20,7 @@ from sprung.selection.from_ordinary_vehicle import (
 )
 from sprung.selection.linear_terms import FLEXIBLE_BODIES
 from sprung.selection.nonlinear_terms import DAMPER_LAW
+from sprung.selection.ordinary_vehicle import fit_usual_terms
 from sprung.selection.scoring import score_terms
 from sprung.selection.search import ModelSearch
 from sprung.selection.stepwise import (
@@ -208,6 +209,10 @@ def _from_likeliest_beginning(bases: Sequence[ModelSearch], terms: Sequence[str]
     found = select_further_terms(from_contact(early, on_the_way=True), whole=False)
     if search.leaves_misfit(found.fit, MISFIT_LEFT):
         return replace(search, steps=found.steps)
+    # Term after term led it through models that lacked the others, to where friction holds with what they make, say.
+    anew = fit_usual_terms(replace(search, steps=found.steps), found.structure)
+    if anew is not None and anew.fit.loglikelihood > found.fit.loglikelihood:
+        found = replace(anew, decays=found.decays)
     found = found.recorded({term: found.wald_gain(term) for term in found.selected}, True, True)
     return select_terms_in_whole(found, search.decays)
 
