@@ -182,6 +182,15 @@ def test_terms_that_were_found_one_after_the_other_are_fitted_together_as_well()
 
 
 @pytest.mark.long
+def test_the_second_best_part_is_gone_on_from_where_the_best_leaves_much() -> None:
+    """A bus that bends, with friction: a loose engine explained more of the beginnings; all masses were several times off."""
+    ((campaign, truth),) = record([draw_test("two effects", 27)])
+    outcome = examine(campaign, truth, 2 * LIMIT)
+    assert (outcome.verdict, {*outcome.model}, outcome.faults) == ("accept", {"bending", "friction"}, ())
+    assert outcome.worst_scaled[0] < 4
+
+
+@pytest.mark.long
 def test_means_of_samples_blur_no_knee() -> None:
     """2000 a second and 0.006 m/s² of noise: the rebound was 5 standard errors off, 0.07 %, as means were fitted to the end."""
     outcome = identified(422)

@@ -34,8 +34,8 @@ from sprung.selection.structure import ModelStructure
 from sprung.selection.term_fits import begin_nonlinear_fit, fit_term, select_gravity_leakage
 from sprung.selection.terms import TERMS
 
-_TRIED_FIRST = 3
-"""Nonlinear terms of which the likeliest is fitted first."""
+_TRIED_FIRST, _BASES = 3, 2
+"""Nonlinear terms of which the likeliest is fitted first; and bases from which the search goes on, until one leaves little."""
 
 SearchFromBase = Callable[[ModelSearch], ModelSearch]
 """A search for nonlinear terms, given the search so far for what it has tried."""
@@ -201,11 +201,22 @@ def _from_likeliest_beginning(bases: Sequence[ModelSearch], terms: Sequence[str]
         return search
     # What part there is makes more of a difference than which law a spring or damper has.
     first = [(_with_first_steps(base, promising[0]), base, promising[1:_TRIED_FIRST]) for base, promising in ranked]
-    likeliest, base, others = max(first, key=lambda one: one[0].fit.loglikelihood)
-    best = max([likeliest, *(_with_first_steps(base, term) for term in others)], key=lambda one: one.fit.loglikelihood)
-    if search.leaves_misfit(best.fit, MISFIT_LEFT_AT_FIRST):
-        return search
-    early = replace(best, steps=search.steps, decays=best.fit.decays)
+    best = search
+    for likeliest, base, others in sorted(first, key=lambda one: -one[0].fit.loglikelihood)[:_BASES]:
+        ends = [likeliest, *(_with_first_steps(base, term) for term in others)]
+        begun = max(ends, key=lambda one: one.fit.loglikelihood)
+        if search.leaves_misfit(begun.fit, MISFIT_LEFT_AT_FIRST):
+            break
+        found = _gone_on(replace(search, steps=best.steps), begun)
+        best = found if is_likelier(found, best) else replace(best, steps=found.steps)
+        if best.structure.is_nonlinear and not best.lacks_something:
+            break
+    return best
+
+
+def _gone_on(search: ModelSearch, begun: ModelSearch) -> ModelSearch:
+    """Go on from the beginnings of the decays, to further terms and to the whole decays; as given where much is left."""
+    early = replace(begun, steps=search.steps, decays=begun.fit.decays)
     found = select_further_terms(from_contact(early, on_the_way=True), whole=False)
     if search.leaves_misfit(found.fit, MISFIT_LEFT):
         return replace(search, steps=found.steps)
