@@ -204,19 +204,19 @@ def _from_likeliest_beginning(bases: Sequence[ModelSearch], terms: Sequence[str]
     best = search
     for likeliest, base, others in sorted(first, key=lambda one: -one[0].fit.loglikelihood)[:_BASES]:
         ends = [likeliest, *(_with_first_steps(base, term) for term in others)]
-        begun = max(ends, key=lambda one: one.fit.loglikelihood)
-        if search.leaves_misfit(begun.fit, MISFIT_LEFT_AT_FIRST):
+        start = max(ends, key=lambda one: one.fit.loglikelihood)
+        if search.leaves_misfit(start.fit, MISFIT_LEFT_AT_FIRST):
             break
-        found = _gone_on(replace(search, steps=best.steps), begun)
+        found = _select_from_start(replace(search, steps=best.steps), start)
         best = found if is_likelier(found, best) else replace(best, steps=found.steps)
         if best.structure.is_nonlinear and not best.lacks_something:
             break
     return best
 
 
-def _gone_on(search: ModelSearch, begun: ModelSearch) -> ModelSearch:
+def _select_from_start(search: ModelSearch, start: ModelSearch) -> ModelSearch:
     """Go on from the beginnings of the decays, to further terms and to the whole decays; as given where much is left."""
-    early = replace(begun, steps=search.steps, decays=begun.fit.decays)
+    early = replace(start, steps=search.steps, decays=start.fit.decays)
     found = select_further_terms(from_contact(early, on_the_way=True), whole=False)
     if search.leaves_misfit(found.fit, MISFIT_LEFT):
         return replace(search, steps=found.steps)
