@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from sprung.analysis.analysis import Analysis
-from sprung.preprocess import FreeDecay, exclude_drops, prepare
+from sprung.preprocess import exclude_drops, prepare
 from sprung.progress import Progress, Step
 from sprung.selection import final_tolerance
 
@@ -43,12 +43,7 @@ def with_all_samples(run: Analysis, progress: Progress) -> Analysis:
     progress(Step("using all samples of the recordings"))
     prepared = exclude_drops(run.campaign, prepare(run.campaign, progress, full_rate=True), run.excluded)
     whole = {decay.file: decay for decay in prepared.decays}
-    decays = tuple(_begun_at(whole.get(decay.file, decay), decay.start) for decay in run.decays)
+    decays = tuple(whole.get(decay.file, decay).starting_at(decay.start) for decay in run.decays)
     search = replace(run.model, decays=decays, progress=progress)
     search = search.refit(search.structure, enough=final_tolerance(search))
     return replace(run, preparation=prepared, search=search, fits=run.fits + 1, preparations=run.preparations + 1)
-
-
-def _begun_at(decay: FreeDecay, start: float) -> FreeDecay:
-    """Let a decay begin at a time on the clock of its file, s, or where its recording first shows that it may."""
-    return decay.shifted(max(round((start - decay.start) * decay.rate), -decay.earlier.shape[1]))

@@ -125,8 +125,7 @@ def _near_confirmed(
 def _begun_as(fitted: Sequence[FreeDecay], decays: Sequence[FreeDecay]) -> tuple[FreeDecay, ...]:
     """Let decays begin no earlier than those that a correction explains."""
     starts = {decay.file: decay.start for decay in fitted}
-    shifts = [max(round((starts.get(decay.file, decay.start) - decay.start) * decay.rate), 0) for decay in decays]
-    return tuple(decay.shifted(shift) for decay, shift in zip(decays, shifts, strict=True))
+    return tuple(decay.shifted(max(decay.samples_to(starts.get(decay.file, decay.start)), 0)) for decay in decays)
 
 
 def converged(run: Analysis, progress: Progress) -> Analysis:

@@ -232,10 +232,7 @@ def decays_without_wheel_sensors(campaign: Campaign, decays: Sequence[FreeDecay]
     starts = {decay.file: decay.start for decay in prepare(masked).decays}
     moved = []
     for decay in decays:
-        shift = round((starts.get(decay.file, decay.start) - decay.start) * decay.rate)
-        moved.append(
-            decay.shifted(max(shift, -decay.earlier.shape[1]))
-            if shift < decay.samples / 2 and not decay.is_driven
-            else decay
-        )
+        start = starts.get(decay.file, decay.start)
+        is_moved = decay.samples_to(start) < decay.samples / 2 and not decay.is_driven
+        moved.append(decay.starting_at(start) if is_moved else decay)
     return tuple(moved)

@@ -149,6 +149,14 @@ class FreeDecay:
         events = replace(self.events, why_fit=FREE if self.is_driven else FITTED) if samples else self.events
         return replace(self, values=whole[:, first:], earlier=whole[:, :first], start=start, events=events)
 
+    def samples_to(self, time: float) -> int:
+        """Return how many samples after its start a time on the file's own clock is, s; negative before it."""
+        return round((time - self.start) * self.rate)
+
+    def starting_at(self, time: float) -> FreeDecay:
+        """Return the decay from a time on the file's own clock on, s, or from where its recording first shows that it may."""
+        return self.shifted(max(self.samples_to(time), -self.earlier.shape[1]))
+
     @property
     def end(self) -> float:
         """Time of the last sample on the file's own clock, s."""

@@ -144,7 +144,7 @@ def begin_no_later(search: ModelSearch, decays: Sequence[FreeDecay]) -> ModelSea
 
 def _begun_at(search: ModelSearch, starts: Sequence[float]) -> ModelSearch:
     """Return the search with decays that begin at later times, s, and its model fitted to them."""
-    shifts = [round((start - decay.start) * decay.rate) for start, decay in zip(starts, search.decays, strict=True)]
+    shifts = [decay.samples_to(start) for start, decay in zip(starts, search.decays, strict=True)]
     if not any(shifts):
         return search
     enough = search.overdispersion if search.structure.is_time_stepped else NEAR

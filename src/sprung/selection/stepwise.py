@@ -126,8 +126,7 @@ def select_terms_in_whole(early: ModelSearch, decays: Sequence[FreeDecay]) -> Mo
     ModelSearch
     """
     whole = [
-        decay.shifted(round((beginning.start - decay.start) * decay.rate))
-        for decay, beginning in zip(decays, early.decays, strict=True)
+        decay.shifted(decay.samples_to(beginning.start)) for decay, beginning in zip(decays, early.decays, strict=True)
     ]
     search = from_contact(replace(early, decays=whole), on_the_way=True)
     # What leaves so much is not the vehicle: another base may lead to it, and further terms beside this one would be slow.
