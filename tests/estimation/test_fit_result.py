@@ -144,8 +144,7 @@ def test_one_drop_of_a_stepped_fit_is_that_drop(stepped: FitResult) -> None:
     # 1e-3 of a standard error is below all that a fit resolves.
     errors = (alone.gradient - at.by_drop[0][2]) / np.sqrt(np.diagonal(alone.information))
     assert np.abs(errors).max() < 1e-3
-    # The fit followed segments of the motions until they met to 1e-6.
-    np.testing.assert_allclose(whole.residual_sums, stepped.residual_sums, rtol=1e-7)
+    np.testing.assert_allclose(whole.residual_sums, stepped.residual_sums, rtol=1e-12)
 
 
 @pytest.mark.slow

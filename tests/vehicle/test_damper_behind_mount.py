@@ -11,7 +11,7 @@ from sprung.vehicle import (
     NonlinearModel,
     Stepper,
     Vehicle,
-    differentiate_motions,
+    differentiate_motion,
     linear_elements,
     nonlinear_elements,
     parameter_names,
@@ -82,8 +82,8 @@ def test_its_derivatives_are_those_of_the_steps() -> None:
     """Forces are solved to 1e-6 of the largest, also where Newton's method goes back and forth between two kinks."""
     before = stepper(0.001, VALUES)
     motion = before.integrate(STATE[None], np.zeros((1, 0)), 60)
-    outputs = np.eye(18, 18 + before.forces.number)[None]
-    found = differentiate_motions(before, motion, outputs, 1)[0](0)
+    outputs = np.eye(18, 18 + before.forces.number)
+    found = differentiate_motion(before, motion, 0, outputs, 1)
     for name in ("k_df", "c_sr", "r_f", "v_kf", "v_kr", "q_f", "q_r", "a", "m_uf"):
         position = NAMES.index(name)
         ends = []

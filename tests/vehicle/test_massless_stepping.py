@@ -11,7 +11,7 @@ from sprung.vehicle import (
     NonlinearModel,
     Stepper,
     Vehicle,
-    differentiate_motions,
+    differentiate_motion,
     free_decay,
     linear_elements,
     nonlinear_elements,
@@ -113,8 +113,9 @@ def test_derivatives_are_those_of_the_steps_themselves(monkeypatch: pytest.Monke
     values = before.values
     trajectory = before.integrate(states, memories, steps)
     outputs = 22 + before.forces.number
-    of_drop = differentiate_motions(before, trajectory, np.eye(outputs)[None], 1)[0]
-    found = of_drop(0).transpose(2, 0, 1)[:, None]  # step, drop, output, unknown
+    found = differentiate_motion(before, trajectory, 0, np.eye(outputs), 1).transpose(2, 0, 1)[
+        :, None
+    ]  # step, drop, output, unknown
     for unknown, value in enumerate(values):
         ends = []
         for side in (1, -1):

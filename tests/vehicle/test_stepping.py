@@ -12,27 +12,25 @@ from scipy.integrate import solve_ivp
 from sprung.vehicle import (
     EMPTY,
     EXTRAS,
-    LAYOUTS,
     LINEAR_EXTRAS,
     TABLE_1_CAR,
     Load,
     Matrices,
-    NearbyMotion,
     NonlinearModel,
     Rows,
     Stepper,
     Vehicle,
-    differentiate_motions,
+    differentiate_motion,
     free_decay,
     ground_contact_elements,
-    integrate_near,
     linear_elements,
     nonlinear_elements,
     parameter_names,
     parse_record,
-    segments_of,
     stiffened_air_springs,
 )
+from sprung.vehicle.compilation import compiled
+from sprung.vehicle.compiled_changes import solve
 from sprung.vehicle.damper_curve import CurveParts, damper_curve
 from sprung.vehicle.force_laws import (
     AIR,
@@ -44,7 +42,7 @@ from sprung.vehicle.force_laws import (
     ElementInput,
     ForceLaw,
 )
-from sprung.vehicle.segments import _is_promising
+from sprung.vehicle.stepping import mean_rate_offset
 
 Array = NDArray[np.float64]
 
@@ -233,16 +231,12 @@ def test_derivatives_are_those_of_the_steps_themselves(ground: bool, monkeypatch
     before = stepper(extras, step, ground=ground)
     trajectory = before.integrate(states, memories, steps)
     outputs = 14 + before.forces.number
-    every_output = np.broadcast_to(np.eye(outputs), (2, outputs, outputs))
-    of_drop, starts, _ = differentiate_motions(before, trajectory, every_output, 1)
-    found = np.stack([of_drop(drop).transpose(2, 0, 1) for drop in range(2)], axis=1)
+    every_output = np.eye(outputs)
+    found = np.stack(
+        [differentiate_motion(before, trajectory, drop, every_output, 1).transpose(2, 0, 1) for drop in range(2)],
+        axis=1,
+    )
     assert found.shape == (steps + 1, 2, outputs, len(names) + 22)
-    number, length = segments_of(steps, 1)
-    assert 1 < number < number * length
-    for segment in range(number):
-        own = found[segment * length, :, :14]
-        single = np.finfo(np.float32).eps * np.abs(own).max(axis=-1, keepdims=True)
-        assert (np.abs(starts[:, segment, :14] - own) <= 4 * single).all()
     if ground:
         matrices = linear_part()
         touching = matrices.deflection(matrices.M @ np.array([1.0, 0, 0, 1, 1, 1, 1]) * 9.80665)[3:7]
@@ -302,73 +296,74 @@ def test_knots_of_a_damper_curve_leave_the_steps_of_third_order(rounded: bool) -
     assert errors[1] < 0.1 * 4e-4 * 7
 
 
-@pytest.mark.parametrize("extras", [("friction", "rebound"), ("bump-stop",)])
-def test_motions_near_to_others_are_those_of_the_steps(extras: tuple[str, ...]) -> None:
-    """Segments that are followed side by side end where whole motions do: with a prediction near by, far away, and none."""
+ALL_LAWS = tuple(extra for extra in EXTRAS if extra not in LINEAR_EXTRAS)
+
+
+@pytest.mark.parametrize(
+    "extras", [ALL_LAWS, ("air", "rebound", "damper-curve", "second-knee", "tyre-curve", "tyre-damping")]
+)
+def test_forces_memories_and_surplus_are_those_of_the_laws(extras: tuple[str, ...]) -> None:
+    """What the compiled loop evaluates one by one: here arrays of the whole motions, wheels that land included."""
     names, values = values_of(extras)
-    states, before = some_states(2, 5), stepper(extras, 0.002)
-    memories = np.full((2, before.forces.memories), 0.2)
-    sequential = before.integrate(states, memories, 301)
-    _, segments, transitions = differentiate_motions(before, sequential, np.zeros((2, 0, 14 + before.forces.number)), 2)
-    first = np.arange(segments.shape[1]) * segments_of(301, 2)[1]
-    starts = np.concatenate([sequential.states[first], sequential.memories[first]], axis=2)
-    for change in (1e-5, 3e-3, 1.0):
-        there = stepper(extras, 0.002, values * (1 + change * np.cos(np.arange(len(names)))))
-        forces = np.concatenate([sequential.forces, sequential.surplus], axis=2)
-        near = NearbyMotion(np.swapaxes(starts, 0, 1), transitions, forces)
-        expected = there.integrate(states, memories, 301)
-        # Forces at the end of a step are corrected only so often, those at the start of a segment once more.
-        sizes = [np.abs(part).max(initial=0.0) for part in expected]
-        sizes[-1] = sizes[1]  # the surplus is as precise as the forces
-        for one, other, size in zip(
-            integrate_near(there, states, memories, 301, 2, near), expected, sizes, strict=True
-        ):
-            np.testing.assert_allclose(one, other, atol=1e-6 * size)
+    values = np.where([name.startswith("c_t") for name in names], 300.0, values)
+    states, step = some_states(2, 1), 0.002
+    states[:, 3:7] = 0.03 + np.abs(states[:, 3:7])
+    before = stepper(extras, step, values, ground=True)
+    motion = before.integrate(states, np.full((2, before.forces.memories), 0.3), 200)
+    for drop in range(2):
+        own = before.of_drop(drop)
+        whole = np.hstack([motion.states[:, drop], motion.forces[:, drop], np.ones((201, 1))])
+        inputs = whole @ own.inputs[0].T
+        travel, rate = np.split(inputs, 2, axis=1)
+        held = np.concatenate([motion.memories[:1, drop], motion.memories[:-1, drop]])
+        found = own.forces_at.evaluate(ElementInput(travel, rate, np.diff(travel, axis=0, prepend=travel[:1]), held))
+        largest = np.abs(found.force).max()
+        assert np.ptp(motion.states[:, drop, 3]) > 0.03  # each wheel has been down
+        np.testing.assert_allclose(motion.forces[:, drop], found.force, atol=1e-6 * largest)
+        np.testing.assert_allclose(motion.memories[:, drop], found.memory, atol=1e-5)
+        kinks = own.forces_at.kinks
+        curved = mean_rate_offset(inputs[:-1], np.diff(inputs, axis=0), np.array(step))
+        by_rate, by_travel = (part[1:] + part[:-1] for part in (found.by_rate, found.by_travel))
+        surplus = by_rate * curved - by_travel * np.diff(rate, axis=0) * step / 12
+        arguments = kinks.arguments(inputs)
+        surplus += kinks.surplus(arguments[:-1], arguments[1:])
+        np.testing.assert_allclose(motion.surplus[1:, drop], surplus, atol=1e-5 * largest)
+        assert not motion.surplus[0].any()
 
 
-def test_motions_near_to_others_where_coordinates_without_mass_are_odd_in_number() -> None:
-    """A quarter car with a damper mount has three displacements and two velocities."""
-    extras = ("damper-mount", "friction")
-    car = {"m_s": 350.0, "m_u": 40.0, "k_s": 2e4, "k_t": 2e5, "c_s": 1500.0, "k_d": 3e5, "F": 60.0, "s": 1e5}
-    names = parameter_names("shared", extras, LAYOUTS["quarter"])
-    assert set(names) == set(car)
-    values = np.array([car[name] for name in names])
-    forces = nonlinear_elements("shared", extras, load={"": 0.0}, layout=LAYOUTS["quarter"])
-    model = NonlinearModel.of(linear_elements("shared", extras, layout=LAYOUTS["quarter"]), forces, names, EMPTY)
-
-    def motion(values: Array) -> Stepper:
-        return Stepper.of([model], [0.002], np.array([0]), values)
-
-    before, states, memories = motion(values), np.array([[0.03, 0.01, 0.0, 0.0, 0.0]]), np.zeros((1, 1))
-    known = before.integrate(states, memories, 301)
-    _, segments, transitions = differentiate_motions(before, known, np.zeros((1, 0, 6)), 2)
-    first = np.arange(segments.shape[1]) * segments_of(301, 2)[1]
-    starts = np.concatenate([known.states[first], known.memories[first]], axis=2)
-    near = NearbyMotion(np.swapaxes(starts, 0, 1), transitions, np.concatenate([known.forces, known.surplus], axis=2))
-    there = motion(1.003 * values)
-    expected, found = there.integrate(states, memories, 301), integrate_near(there, states, memories, 301, 2, near)
-    np.testing.assert_allclose(found.states, expected.states, atol=1e-6 * np.abs(expected.states).max())
+def test_a_motion_that_diverges_is_not_finite_from_there_on() -> None:
+    names, values = values_of(("rebound",))
+    values = np.where([name == "c_sf" for name in names], -1e3, values)
+    trajectory = stepper(("rebound",), 0.01, values).integrate(some_states(2), np.zeros((2, 0)), 8000)
+    assert np.isfinite(trajectory.states[:100]).all()
+    assert all(np.isnan(part[-1]).all() for part in (trajectory.states, trajectory.forces, trajectory.surplus))
 
 
-@pytest.mark.parametrize("friction", [0.0, 0.3, 100.0])
-def test_a_small_friction_does_not_keep_segments_open(friction: float, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Its memory turns round within a micrometre, and no force worth mentioning with it: the motions close all the same."""
-    extras = ("friction", "rebound")
-    names, values = values_of(extras)
-    values = np.where([name.startswith("F_") for name in names], friction, values)
-    states, before = some_states(2, 5), stepper(extras, 0.002, values)
-    memories = np.full((2, before.forces.memories), 0.2)
-    known = before.integrate(states, memories, 301)
-    _, segments, transitions = differentiate_motions(before, known, np.zeros((2, 0, 14 + before.forces.number)), 2)
-    first = np.arange(segments.shape[1]) * segments_of(301, 2)[1]
-    starts = np.concatenate([known.states[first], known.memories[first]], axis=2)
-    near = NearbyMotion(np.swapaxes(starts, 0, 1), transitions, np.concatenate([known.forces, known.surplus], axis=2))
-    there = stepper(extras, 0.002, values * (1 + 1e-2 * np.cos(np.arange(len(names)))))
-    expected = there.integrate(states, memories, 301)
-    monkeypatch.setattr(Stepper, "integrate", None)  # whole motions are not followed
-    found = integrate_near(there, states, memories, 301, 2, near)
-    np.testing.assert_allclose(found.states, expected.states, atol=2e-6 * np.abs(expected.states).max())
-    np.testing.assert_allclose(found.forces, expected.forces, atol=2e-6 * np.abs(expected.forces).max())
+def test_systems_of_equations_are_solved_where_the_diagonal_is_zero() -> None:
+    random = np.random.default_rng(0)
+    matrix, right = (
+        random.standard_normal((6, 6)).astype(np.float32),
+        random.standard_normal((6, 16)).astype(np.float32),
+    )
+    matrix[0, 0] = matrix[1, 1] = 0.0
+    expected = np.linalg.solve(matrix.astype(np.float64), right.astype(np.float64))
+    solve(matrix, right)
+    np.testing.assert_allclose(right, expected, atol=1e-4 * np.abs(expected).max())
+
+
+def test_loops_are_compiled_where_nothing_can_be_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As in a container that can only be read."""
+    options: list[bool] = []
+
+    def compile_function(function: object, cache: bool = False, **_: object) -> object:
+        options.append(cache)
+        if cache:
+            raise RuntimeError("cannot cache function: no locator available")
+        return function
+
+    monkeypatch.setattr("sprung.vehicle.compilation.njit", compile_function)
+    assert compiled(abs) is abs
+    assert options == [True, False]
 
 
 @pytest.mark.parametrize(
@@ -419,19 +414,3 @@ def test_friction_slides_at_its_force_and_holds_at_its_stiffness() -> None:
     assert FRICTION.evaluate(p, far).force[0] == pytest.approx(100.0)
     near = ElementInput(*(np.array([value]) for value in (1e-7, 0.0, 1e-7, 0.0)))
     assert FRICTION.evaluate(p, near).force[0] == pytest.approx(2e5 * 1e-7, rel=1e-3)
-
-
-@pytest.mark.parametrize(
-    ("error", "previous", "promising"),
-    [
-        (0.5, np.inf, True),
-        (2.0, np.inf, False),
-        (1e-2, 1.0, True),
-        (0.9, 1.0, False),
-        (1e300, 1e-3, False),
-        (np.nan, 1.0, False),
-    ],
-)
-def test_passes_go_on_only_where_they_will_close_the_motions(error: float, previous: float, promising: bool) -> None:
-    """Also of a motion that runs away, the powers of which are no numbers."""
-    assert _is_promising(error, previous, 8) is promising

@@ -111,9 +111,7 @@ class TimeSteppingAt:
 
     def _moved_by(self, values: Real, states: Real) -> TimeSteppingAt:
         """Return the likelihood at other parameter values, initial states and memories moved by so much."""
-        of_model = (values - self.values)[: self.objective.sensors.shared]
-        near = self.stepped.predict(np.hstack([np.tile(of_model, (len(states), 1)), states]))
-        return self.objective.at_states(values, self.weights, self.stepped.begin + states, near)
+        return self.objective.at_states(values, self.weights, self.stepped.begin + states)
 
     def with_optimal_states(self, most: int = _STATE_STEPS) -> TimeSteppingAt:
         """Return the likelihood with the initial states that maximise it here, after so many steps at the most."""
@@ -201,7 +199,7 @@ class TimeSteppingAt:
         # What a change of the parameters is in a drop whose initial state follows it.
         change = np.concatenate([np.tile(np.eye(len(self.values)), (len(response), 1, 1)), response], axis=1)
         change = change @ self.objective.visible_changes(self.values)
-        products = np.einsum("c,wdcij->wdij", self.weights, self.stepped.linearised[0], optimize=True)
+        products = np.einsum("c,wdcij->wdij", self.weights, self.stepped.products_by_window, optimize=True)
         gradient = np.einsum("dup,wdu->wp", change, products[..., :-1, -1], optimize=True)
         information = np.einsum("dup,wduv,dvq->wpq", change, products[..., :-1, :-1], change, optimize=True)
         return gradient, information

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.units import STANDARD_GRAVITY
-from sprung.vehicle import NearbyMotion, Stepper, Trajectory, differentiate_motions, segments_of
+from sprung.vehicle import Stepper, Trajectory, differentiate_motion
 
 if TYPE_CHECKING:
     from sprung.estimation.low_pass import SampledLowPass
@@ -56,21 +56,9 @@ class SteppedMotion:
 
     def of_drop(self, drop: int, alone: TimeSteppingObjective) -> SteppedMotion:
         """Return the motion of one drop, by its position, with an objective of it alone that takes the same steps."""
-        stepper = replace(self.stepper.of_kind(self.stepper.kind[drop]), kind=np.zeros(1, dtype=np.int64))
         steps = alone.every * (alone.samples[0] - 1)
         trajectory = Trajectory(*(part[: steps + 1, [drop]] for part in self.trajectory))
-        return SteppedMotion(alone, self.values, self.begin[[drop]], stepper, trajectory)
-
-    def predict(self, change: Real) -> NearbyMotion:
-        """Predict the motions after a small change of the model's parameters and initial states, shape (drop, unknown)."""
-        _, by_unknown, transitions = self.linearised
-        steps = len(self.trajectory.states) - 1
-        number, length = segments_of(steps, self.objective.every)
-        first = np.minimum(np.arange(number) * length, steps)
-        starts = np.concatenate([self.trajectory.states[first], self.trajectory.memories[first]], axis=-1)
-        moved = np.swapaxes(starts, 0, 1) + np.einsum("dsiu,du->dsi", by_unknown, change, optimize=True)
-        forces = np.concatenate([self.trajectory.forces, self.trajectory.surplus], axis=2)
-        return NearbyMotion(moved, transitions, forces)
+        return SteppedMotion(alone, self.values, self.begin[[drop]], self.stepper.of_drop(drop), trajectory)
 
     @cached_property
     def _forces(self) -> Real:
@@ -199,19 +187,19 @@ class SteppedMotion:
         Shape (drop, channel, unknown + 1, unknown + 1); what a record may show whatever the motion is subtracted.
         """
         with np.errstate(invalid="ignore"):
-            products: Real = self.linearised[0].sum(axis=0)
+            products: Real = self.products_by_window.sum(axis=0)
         return products
 
     @cached_property
-    def linearised(self) -> tuple[Real, Real, Real]:
-        """The products by window, and what predicts motions nearby: starts and transitions of `differentiate_motions`.
+    def products_by_window(self) -> Real:
+        """The products by window, shape (window, drop, channel, unknown + 1, unknown + 1).
 
         Not finite where the motion is not, as at the start of a fit that diverges.
         """
         with np.errstate(over="ignore", invalid="ignore"):
             return self._linearise()
 
-    def _linearise(self) -> tuple[Real, Real, Real]:
+    def _linearise(self) -> Real:
         objective = self.objective
         S, by_S = objective.sensors.at(self.values), objective.sensors.slopes(self.values)
         shared = objective.sensors.shared
@@ -230,18 +218,16 @@ class SteppedMotion:
             units = np.eye(outputs.shape[2])[objective.angles]
             angles = np.broadcast_to(units, (len(outputs), *units.shape))
             outputs = np.concatenate([outputs, angles], axis=1)
-        of_drop, starts, transitions = differentiate_motions(
-            self.stepper, self.trajectory, outputs, objective.every, self._of_sample
-        )
         at_readings = np.ascontiguousarray(self._inputs(objective.every // self._of_sample).transpose(1, 2, 0))
-        columns = len(self.values) + starts.shape[2] + 1
+        columns = len(self.values) + self.begin.shape[1] + 1
         products = np.empty((_WINDOWS, *objective.channel_weights.shape, columns, columns))
 
         def fill(drop: int) -> None:
             """Fill in the products of one drop in each window."""
             with np.errstate(over="ignore", invalid="ignore"):  # of this thread
-                same = of_same_motion[objective.kind[drop]]
-                derivatives = self._derivatives_of_drop(at_readings[drop], same, of_drop(drop), drop)
+                kind, every = objective.kind[drop], objective.every // self._of_sample
+                moved = differentiate_motion(self.stepper, self.trajectory, drop, outputs[kind], every)
+                derivatives = self._derivatives_of_drop(at_readings[drop], of_same_motion[kind], moved, drop)
                 for window, own in zip(products, self._windows(derivatives, drop), strict=True):
                     np.matmul(own, np.swapaxes(own, 1, 2), out=window[drop])
                 products[:, drop] *= objective.channel_weights[drop, :, None, None]
@@ -249,7 +235,7 @@ class SteppedMotion:
         # Each drop may have a processor of its own.
         with ThreadPoolExecutor(os.cpu_count()) as pool:
             list(pool.map(fill, range(len(objective.decays))))
-        return products, starts, transitions
+        return products
 
     def _derivatives_of_drop(self, at_readings: Real, same: Real, moved: Real, drop: int) -> Real:
         """Return how the readings of one drop follow the unknowns, and as the last its residual.
@@ -261,7 +247,7 @@ class SteppedMotion:
         same
             What each parameter changes in the readings of the same motion, shape (channel, parameter, input).
         moved
-            What the unknowns change in the readings by the motion, from `differentiate_motions`.
+            What the unknowns change in the readings by the motion, from `differentiate_motion`.
         drop
             Its position.
 

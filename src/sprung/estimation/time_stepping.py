@@ -21,12 +21,10 @@ from sprung.estimation.stepped_likelihood import TimeSteppingAt
 from sprung.estimation.stepped_motion import SteppedMotion
 from sprung.preprocess import FreeDecay
 from sprung.vehicle import (
-    NearbyMotion,
     NonlinearModel,
     Readout,
     Stepper,
     coordinates,
-    integrate_near,
     layout_of,
     parameter_of,
 )
@@ -223,19 +221,13 @@ class TimeSteppingObjective:
         begin[:, : self.states.shape[1]] += self.states[:, : begin.shape[1]]
         return self.at_states(values, weights, begin)
 
-    def at_states(self, values: Real, weights: Real, begin: Real, near: NearbyMotion | None = None) -> TimeSteppingAt:
-        """Evaluate with initial states and memories from where the empty vehicle rests, shape (drop, state + memory).
-
-        What is known of the motions, as from `SteppedMotion.predict`, saves time.
-        """
+    def at_states(self, values: Real, weights: Real, begin: Real) -> TimeSteppingAt:
+        """Evaluate with initial states and memories from where the empty vehicle rests, shape (drop, state + memory)."""
         states, memories = np.split(begin, [self.state_size], axis=1)
         steps = self.every * (self.records.shape[2] - 1)
         with np.errstate(over="ignore", invalid="ignore"):  # where a motion has no bounds
             stepper = Stepper.of(self.models_by_kind, self.times, self.kind, values[: self.sensors.shared])
-            if near is None:
-                trajectory = stepper.integrate(states, memories, steps)
-            else:
-                trajectory = integrate_near(stepper, states, memories, steps, self.every, near)
+            trajectory = stepper.integrate(states, memories, steps)
         return TimeSteppingAt(SteppedMotion(self, values, begin, stepper, trajectory), weights)
 
     def sag(self, values: Real) -> Real:

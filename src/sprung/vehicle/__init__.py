@@ -80,8 +80,7 @@ from sprung.vehicle.parameters import (
 )
 from sprung.vehicle.readout import Readout, sensor_rows
 from sprung.vehicle.response import Motion, affine_response, after_rest, free_decay
-from sprung.vehicle.segments import NearbyMotion, integrate_near, segments_of
-from sprung.vehicle.sensitivities import differentiate_motions
+from sprung.vehicle.sensitivities import differentiate_motion
 from sprung.vehicle.sensor import LARGEST_PLACE, PADS, Sensor, SensorPlace, uncertainties_of
 from sprung.vehicle.stepping import StepDrive, Stepper, Trajectory
 from sprung.vehicle.tyre_rates import differentiate_tyre_rates_at_rest, with_tyre_rates_at_rest
@@ -134,7 +133,6 @@ __all__ = [
     "Load",
     "Matrices",
     "Motion",
-    "NearbyMotion",
     "NonlinearElement",
     "NonlinearForces",
     "NonlinearModel",
@@ -163,7 +161,7 @@ __all__ = [
     "body_sinking",
     "checked_record",
     "coordinates",
-    "differentiate_motions",
+    "differentiate_motion",
     "differentiate_tyre_rates_at_rest",
     "evaluate_quantities",
     "evaluate_quantity",
@@ -174,7 +172,6 @@ __all__ = [
     "heave",
     "highest_derivatives",
     "inboard_shares",
-    "integrate_near",
     "is_nuisance",
     "is_of_sensor",
     "layout_of",
@@ -189,7 +186,6 @@ __all__ = [
     "parameters_of_term",
     "parse_record",
     "problems_of_record",
-    "segments_of",
     "sensor_rows",
     "sensor_unknown",
     "separate_track_names",

@@ -22,13 +22,13 @@ Array = NDArray[np.float64]
 _SHORTEST = 1e-7
 """m: least travel over which friction builds up. It keeps a friction force of zero from dividing by zero."""
 
-_POLYTROPIC = 1.3
+POLYTROPIC_EXPONENT = 1.3
 """Exponent of the gas in an air spring: it exchanges some heat within a period."""
 
-_LEAST_COLUMN = 0.05
+LEAST_COLUMN = 0.05
 """Height of the column of an air spring, over that at rest, below which its force grows no more."""
 
-_SMALL_STRAIN = 1e-4
+SMALL_STRAIN = 1e-4
 """Of an air spring, below which a series is more precise than the difference of its forces."""
 
 
@@ -76,6 +76,38 @@ class ElementForce(NamedTuple):
     memory_by_memory: Array
 
 
+class TravelCurve(NamedTuple):
+    """Forces that follow from the travel x alone, each of shape (element,): -p min(x, x₁)²/2, and that of an air spring.
+
+    Attributes
+    ----------
+    growth, highest
+        p, N/m², and x₁, m.
+    rate, inverse_height
+        Of an air spring, N/m and 1/m, see `AIR`; zero for none.
+    """
+
+    growth: Array
+    highest: Array
+    rate: Array
+    inverse_height: Array
+
+
+class Friction(NamedTuple):
+    """Forces that follow from their memory alone, each of shape (element,).
+
+    Attributes
+    ----------
+    force
+        With a memory of one.
+    length
+        Travel over which it builds up, m.
+    """
+
+    force: Array
+    length: Array
+
+
 @dataclass(frozen=True, slots=True)
 class ForceLaw:
     """A force law.
@@ -90,6 +122,8 @@ class ForceLaw:
         Forces from the law's parameters, shape (parameter, element), and the input.
     differentiate
         Derivatives of force and memory by the law's parameters, each of shape (parameter, ..., element), from the same.
+    steps
+        What its force is in time stepping, from the law's parameters: a curve or a friction. None for a sum of kinks.
     kinks
         Of a force that is the sum of these alone, from the law's parameters, which may be complex; None for any other.
     """
@@ -98,12 +132,13 @@ class ForceLaw:
     has_memory: bool
     evaluate: Callable[[Array, ElementInput], ElementForce]
     differentiate: Callable[[Array, ElementInput], tuple[Array, Array]]
+    steps: Callable[[Array], TravelCurve | Friction] | None = None
     kinks: Callable[[Array], Kinks] | None = None
 
 
 def bent_law(name: str, kinks: Callable[[Array], Kinks]) -> ForceLaw:
     """Return the law of a force that is the sum of kinks."""
-    return ForceLaw(name, False, partial(_bent, kinks), partial(_bent_derivatives, kinks), kinks)
+    return ForceLaw(name, False, partial(_bent, kinks), partial(_bent_derivatives, kinks), kinks=kinks)
 
 
 def _bent(kinks_of: Callable[[Array], Kinks], parameters: Array, given: ElementInput) -> ElementForce:
@@ -167,6 +202,10 @@ def _friction_derivatives(parameters: Array, given: ElementInput) -> tuple[Array
     return by_force, np.stack([by_length * np.sign(force) / stiffness, -by_length * length / stiffness])
 
 
+def _as_friction(parameters: Array) -> Friction:
+    return Friction(parameters[0], _friction_length(parameters)[0])
+
+
 def _load_friction(parameters: Array, given: ElementInput) -> ElementForce:
     coefficient, own = parameters[0], parameters[1:]
     memory = _friction(own, given)
@@ -179,6 +218,10 @@ def _load_friction_derivatives(parameters: Array, given: ElementInput) -> tuple[
     return force, np.concatenate([np.zeros_like(memory[:1]), memory])
 
 
+def _as_load_friction(parameters: Array) -> Friction:
+    return Friction(parameters[0], _friction_length(parameters[1:])[0])
+
+
 def _uneven_friction(side: float, parameters: Array, given: ElementInput) -> ElementForce:
     difference, *own = parameters
     sliding, memory = own[0] + side * difference, _friction(np.stack(own), given)
@@ -189,6 +232,10 @@ def _uneven_friction_derivatives(side: float, parameters: Array, given: ElementI
     by_friction, memory = _friction_derivatives(parameters[1:], given)
     force = np.concatenate([side * by_friction[:1], by_friction])
     return force, np.concatenate([np.zeros_like(memory[:1]), memory])
+
+
+def _as_uneven_friction(side: float, parameters: Array) -> Friction:
+    return Friction(parameters[1] + side * parameters[0], _friction_length(parameters[1:])[0])
 
 
 def _rebound_kinks(parameters: Array) -> Kinks:
@@ -209,6 +256,11 @@ def _progressive_derivatives(parameters: Array, given: ElementInput) -> tuple[Ar
     return force, np.zeros_like(force)
 
 
+def _as_progressive(highest: float, parameters: Array) -> TravelCurve:
+    growth, none = np.prod(parameters, axis=0), np.zeros_like(parameters[0])
+    return TravelCurve(growth, none + highest, none, none)
+
+
 def _tyre_curve(parameters: Array, given: ElementInput) -> ElementForce:
     return _progressive(parameters, given._replace(travel=np.minimum(given.travel, 0.0)))
 
@@ -223,11 +275,11 @@ def _air_ratio(strain: Array) -> tuple[Array, Array]:
     The strain is the travel over the height of the column, positive in extension. Near rest the difference of nearly equal
     numbers is replaced by its series.
     """
-    n, column = _POLYTROPIC, np.maximum(1.0 + strain, _LEAST_COLUMN)
-    is_small = np.abs(strain) < _SMALL_STRAIN
+    n, column = POLYTROPIC_EXPONENT, np.maximum(1.0 + strain, LEAST_COLUMN)
+    is_small = np.abs(strain) < SMALL_STRAIN
     safe = np.where(is_small, 1.0, strain)
     mean = (1.0 - column**-n) / (n * safe) - 1.0
-    slope = (np.where(column > _LEAST_COLUMN, column ** (-n - 1), 0.0) - 1.0 - mean) / safe
+    slope = (np.where(column > LEAST_COLUMN, column ** (-n - 1), 0.0) - 1.0 - mean) / safe
     near = (n + 1) * strain * (-1 / 2 + (n + 2) * strain * (1 / 6 - (n + 3) * strain / 24))
     near_slope = (n + 1) * (-1 / 2 + (n + 2) * strain * (1 / 3 - (n + 3) * strain / 8))
     return np.where(is_small, near, mean), np.where(is_small, near_slope, slope)
@@ -247,6 +299,12 @@ def _air_derivatives(parameters: Array, given: ElementInput) -> tuple[Array, Arr
     mean, slope = _air_ratio(inverse * given.travel)
     force = np.stack([spring * given.travel**2 * slope, given.travel * mean])
     return force, np.zeros_like(force)
+
+
+def _as_air(parameters: Array) -> TravelCurve:
+    inverse, spring = parameters
+    none = np.zeros_like(spring)
+    return TravelCurve(none, none + np.inf, spring, inverse)
 
 
 def _bump_stop_kinks(parameters: Array) -> Kinks:
@@ -269,27 +327,27 @@ def _uneven_ground_kinks(side: float, parameters: Array) -> Kinks:
     return _ground_kinks(np.stack([mean + side * uneven, *damping]))
 
 
-FRICTION = ForceLaw("friction", True, _friction, _friction_derivatives)
+FRICTION = ForceLaw("friction", True, _friction, _friction_derivatives, _as_friction)
 """Dry friction with presliding: force F, N, and presliding stiffness s, N/m, after :term:`Dahl <Dahl model>` (Aerospace
 Corporation TOR-0158(3107-18)-1, 1968, exponent one): f' = s x' - (s/F) |x'| f."""
 
-LOAD_FRICTION = ForceLaw("load-friction", True, _load_friction, _load_friction_derivatives)
+LOAD_FRICTION = ForceLaw("load-friction", True, _load_friction, _load_friction_derivatives, _as_load_friction)
 """What a load adds to a dry friction, per weight that the spring carries of it: a coefficient u, and the force F, N, and
 presliding stiffness s, N/m, of the friction without the load. It builds up over the same travel F/s."""
 
 REBOUND = bent_law("rebound", _rebound_kinks)
 """Excess of rebound over compression damping: ratio r of the two and damping c in compression, N s/m."""
 
-PROGRESSIVE = ForceLaw("progressive", False, _progressive, _progressive_derivatives)
+PROGRESSIVE = ForceLaw("progressive", False, _progressive, _progressive_derivatives, partial(_as_progressive, np.inf))
 """Progressive spring or tyre: growth p of the rate with compression from rest, as a part of the rate per metre, and rate k at
 rest, N/m."""
 
-AIR = ForceLaw("air", False, _air, _air_derivatives)
+AIR = ForceLaw("air", False, _air, _air_derivatives, _as_air)
 """What the change of pressure in an air spring adds to the force of its rate at rest: inverse of the effective height h of the
 column, 1/m, and rate k at rest, N/m; the force is k h/n (1 - (1 + x/h)⁻ⁿ) with the exponent n = 1.3, positive in extension
 (Wong, Theory of Ground Vehicles, 2008, section 7.3)."""
 
-TYRE_CURVE = ForceLaw("tyre-curve", False, _tyre_curve, _tyre_curve_derivatives)
+TYRE_CURVE = ForceLaw("tyre-curve", False, _tyre_curve, _tyre_curve_derivatives, partial(_as_progressive, 0.0))
 """What the growth of its rate adds to the force of a tyre: growth h with deflection, as a part of the rate per metre, and rate
 k where it first touches the ground, N/m; the travel is the height of the wheel above there. The whole tyre has the force
 k d (1 + h d/2) at the deflection d."""
@@ -304,7 +362,11 @@ tyre just touches the ground."""
 
 UNEVEN_FRICTION: Mapping[float, ForceLaw] = {
     side: ForceLaw(
-        f"friction {name}", True, partial(_uneven_friction, side), partial(_uneven_friction_derivatives, side)
+        f"friction {name}",
+        True,
+        partial(_uneven_friction, side),
+        partial(_uneven_friction_derivatives, side),
+        partial(_as_uneven_friction, side),
     )
     for side, name in ((1.0, "left"), (-1.0, "right"))
 }

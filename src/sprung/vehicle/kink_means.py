@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-_STILL = 1e-3
+STILL = 1e-3
 """Change of the argument over its distance from a rounded kink, below which the law is straight within the step."""
 
 
@@ -64,7 +64,7 @@ def rounded_excess(before: Array, after: Array, width: Array) -> tuple[Array, Ar
     """Return the same of (u + sqrt(u² + w²))/2, and its derivatives by both ends and by the width w."""
     roots = np.hypot(before, width), np.hypot(after, width)
     change = after - before
-    moves = np.abs(change) > _STILL * np.minimum(*roots)
+    moves = np.abs(change) > STILL * np.minimum(*roots)
     safe = np.where(moves, change, 1.0)
     ends, slopes, by_width, wholes, of_width = [], [], [], [], []
     for u, root in zip((before, after), roots, strict=True):

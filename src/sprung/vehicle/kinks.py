@@ -238,7 +238,7 @@ class KinkForces:
         """
         moved = (after - before)[..., : len(self.row_of)]
         turned = self._hinges(after)[1] - self._hinges(before)[1]
-        found: Array = (0.5 * self._excess(before, after) + moved * turned / 12.0) @ self._by_hinge
+        found: Array = 0.5 * self.surplus(before, after) + (moved * turned / 12.0) @ self._by_hinge
         return found
 
     def _excess(self, before: Array, after: Array) -> Array:
@@ -267,42 +267,37 @@ class KinkForces:
         by_parameter
             Likewise of each dependence on a parameter, shape (..., dependence).
         """
-        number, aloft = len(self.row_of), self._aloft
-        ends = self.arguments(before), self.arguments(after)
-        # Few steps pass a kink: only these are computed.
-        passed = ends[0] * ends[1] < 0
-        passed[..., aloft] |= passed[..., number:]
-        *step, kink = np.nonzero(passed[..., :number] | self._is_rounded)
-        kinks, slopes = (type(part)(*(each[kink] for each in part)) for part in (self.kinks, self.slopes))
-        u, v = (end[(*step, kink)] for end in ends)
-        excess, by_u, by_v, by_width = sharp_excess(u, v), *sharp_excess_slopes(u, v), np.zeros_like(u)
-        if self._is_rounded.any():
-            at = self._is_rounded[kink]
-            for whole, part in zip(
-                (excess, by_u, by_v, by_width), rounded_excess(u[at], v[at], kinks.width[at]), strict=True
+        number, slopes = len(self.row_of), np.array(self.slopes)
+        starts, ends = self.arguments(before), self.arguments(after)
+        # Few steps pass a sharp kink: only these are computed.
+        passed = starts * ends < 0
+        passed[..., self._aloft] |= passed[..., number:]
+        passed[..., :number] |= self._is_rounded
+        for kink, (row, jump, width) in enumerate(zip(self.row_of, self.kinks.jump, self.kinks.width, strict=True)):
+            step = np.nonzero(passed[..., kink])
+            u, v = starts[(*step, kink)], ends[(*step, kink)]
+            by_width, by_start, by_end = np.zeros((3, len(u)))
+            if self.kinks.in_the_air[kink]:
+                of_travel = number + int(np.searchsorted(self._aloft, kink))
+                travels = starts[(*step, of_travel)], ends[(*step, of_travel)]
+                excess, by_u, by_v, by_start, by_end = excess_in_the_air(u, v, *travels)
+            elif width > 0:
+                excess, by_u, by_v, by_width = rounded_excess(u, v, width)
+            else:
+                excess, by_u, by_v = sharp_excess(u, v), *sharp_excess_slopes(u, v)
+            own = np.flatnonzero(slopes[:, kink].any(axis=0))
+            moved = Kinks(*slopes[:, kink][:, own])
+            of_parameters = np.outer(excess, moved.jump) + jump * np.outer(by_width, moved.width)
+            for by_argument, directly, inputs, total in (
+                (by_u, by_start, before, by_before),
+                (by_v, by_end, after, by_after),
             ):
-                whole[at] = part
-        by_travels = np.zeros((2, len(u)))
-        if aloft.size:
-            at = kinks.in_the_air > 0
-            here = tuple(part[at] for part in step)
-            travels = (end[(*here, number + np.searchsorted(aloft, kink[at]))] for end in ends)
-            excess[at], by_u[at], by_v[at], *by_travels[:, at] = excess_in_the_air(u[at], v[at], *travels)
-        row = self.row_of[kink]
-        of_parameters = excess[:, None] * slopes.jump + (kinks.jump * by_width)[:, None] * slopes.width
-        for by_argument, directly, inputs, total in (
-            (by_u, by_travels[0], before, by_before),
-            (by_v, by_travels[1], after, by_after),
-        ):
-            by_end = by_argument * kinks.jump
-            travel, rate = (*step, row), (*step, self.number + row)
-            moved = (
-                inputs[travel][:, None] * slopes.by_travel + inputs[rate][:, None] * slopes.by_rate - slopes.position
-            )
-            of_parameters += by_end[:, None] * moved
-            np.add.at(total, travel, by_end * kinks.by_travel + directly * kinks.jump)
-            np.add.at(total, rate, by_end * kinks.by_rate)
-        np.add.at(by_parameter, tuple(step), of_parameters)
+                travel, rate = (*step, row), (*step, self.number + row)
+                of_argument = np.outer(inputs[travel], moved.by_travel) + np.outer(inputs[rate], moved.by_rate)
+                of_parameters += jump * by_argument[:, None] * (of_argument - moved.position)
+                total[travel] += jump * (by_argument * self.kinks.by_travel[kink] + directly)
+                total[rate] += jump * by_argument * self.kinks.by_rate[kink]
+            by_parameter[(*(part[:, None] for part in step), own)] += of_parameters
 
 
 def hinge(above: Array, position: Array, width: Array) -> tuple[Array, Array, Array, Array]:

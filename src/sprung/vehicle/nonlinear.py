@@ -193,6 +193,24 @@ class NonlinearForces(NamedTuple):
         return force, memory
 
 
+class LawTable(NamedTuple):
+    """The laws of all nonlinear elements at parameter values, each with its row as a first field.
+
+    Attributes
+    ----------
+    kinks
+        With the fields of `Kinks`, shape (7, kink).
+    curves
+        With the fields of `TravelCurve`, shape (5, curve).
+    frictions
+        With the fields of `Friction`, shape (3, memory).
+    """
+
+    kinks: Array
+    curves: Array
+    frictions: Array
+
+
 class ForcesAt(NamedTuple):
     """Nonlinear elements at parameter values.
 
@@ -209,6 +227,16 @@ class ForcesAt(NamedTuple):
     number: int
     laws: tuple[tuple[ForceLaw, slice | Index, slice, Array], ...]
     kinks: KinkForces
+
+    @property
+    def table(self) -> LawTable:
+        """The same laws for the loop over time steps."""
+        every, curves, frictions = np.arange(self.number), [np.zeros((5, 0))], [np.zeros((3, 0))]
+        for law, at, _, parameters in self.laws:
+            if law.steps is not None:
+                (frictions if law.has_memory else curves).append(np.stack([every[at], *law.steps(parameters)]))
+        kinks = np.stack([self.kinks.row_of, *self.kinks.kinks])
+        return LawTable(kinks, np.concatenate(curves, axis=1), np.concatenate(frictions, axis=1))
 
     def evaluate(self, given: ElementInput, arguments: Array | None = None) -> ElementForce:
         """Return the force of each row.

@@ -6,7 +6,9 @@ displacements. So a step of all motions is one product of matrices, and an evalu
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
@@ -14,20 +16,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.vehicle.force_laws import ElementForce, ElementInput
 from sprung.vehicle.nonlinear import ForcesAt, NonlinearForces, NonlinearModel
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
-_MOST_EVALUATIONS = 12
-"""Evaluations of the forces at the end of each step, at the most: mostly two are enough."""
-
 _SOLVED = 1e-7
 """Difference of forces from those that they were evaluated with, as a part of the largest, that is none."""
-
-_OWN_EFFECT = 0.1
-"""Effect of a surplus on forces and on itself, as a part of it, at the most: c h/m of a damper and the mass behind it."""
 
 
 class Trajectory(NamedTuple):
@@ -65,6 +60,58 @@ class StepDrive(NamedTuple):
 
     increments: Array
     inputs: Array
+
+
+class StepMatrices(NamedTuple):
+    """One step of a load and a length; every matrix has its argument along the first axis.
+
+    Attributes
+    ----------
+    transition
+        State at the end of a step without the forces there, by {x, u, 1} at its start, shape (state + row + 1, state).
+    by_state
+        Travels and rates by the state, shape (state, 2 row).
+    by_force
+        State at the end of a step by the forces there, and by their surplus, shape (row, state).
+    at_rest, at_end
+        Travels and rates by the forces with the state held, and by those at the end of a step, shape (row, 2 row).
+    at_start
+        Travels and rates without state and forces, m and m/s, shape (2 row,).
+    weights
+        By which forces of the rows are multiplied, see `NonlinearForces`, shape (row,).
+    length
+        s.
+    has_surplus
+        Whether forces have a surplus.
+    """
+
+    transition: Array
+    by_state: Array
+    by_force: Array
+    at_rest: Array
+    at_end: Array
+    at_start: Array
+    weights: Array
+    length: float
+    has_surplus: bool
+
+
+class Motion(NamedTuple):
+    """A motion, step by step, as far as it is followed.
+
+    Attributes
+    ----------
+    whole
+        {x, u, 1}: state, and forces of the rows, shape (step + 1, state + row + 1).
+    memories
+        Shape (step + 1, memory).
+    surplus
+        As in `Trajectory`, shape (step + 1, row).
+    """
+
+    whole: Array
+    memories: Array
+    surplus: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,9 +159,9 @@ class Stepper:
         n = len(models[0].linear.heave)
         return cls(models[0].forces, values, steps, step_slopes, inputs, input_slopes, np.array(lengths), kind, n)
 
-    def of_kind(self, kind: int) -> Stepper:
-        """Return the steps of one load and length alone."""
-        own = slice(kind, kind + 1)
+    def of_drop(self, drop: int) -> Stepper:
+        """Return the steps of one drop alone, by its position."""
+        own = slice(self.kind[drop], self.kind[drop] + 1)
         return replace(
             self,
             steps=self.steps[own],
@@ -122,7 +169,7 @@ class Stepper:
             inputs=self.inputs[own],
             input_slopes=self.input_slopes[own],
             lengths=self.lengths[own],
-            kind=np.zeros(int(np.sum(self.kind == kind)), dtype=np.int64),
+            kind=np.zeros(1, dtype=np.int64),
         )
 
     @property
@@ -139,18 +186,6 @@ class Stepper:
     def has_surplus(self) -> bool:
         """Whether forces have a surplus: not if all are friction, nor where rates jump with forces, as behind mounts."""
         return not self.directly_by_force.any() and not all(law.has_memory for law, *_ in self.forces.laws)
-
-    @cached_property
-    def slots(self) -> Index:
-        """Drops of each kind, shape (kind, slot): a kind with fewer drops than another one repeats some drop."""
-        drops = [np.flatnonzero(self.kind == kind) for kind in range(len(self.steps))]
-        most = max(map(len, drops))
-        return np.array([np.resize(own if own.size else np.zeros(1, dtype=np.int64), most) for own in drops])
-
-    @cached_property
-    def places(self) -> tuple[Index, Index]:
-        """Kind and slot of each drop, shapes (drop,)."""
-        return self.kind, np.array([int(np.sum(self.kind[:drop] == kind)) for drop, kind in enumerate(self.kind)])
 
     @cached_property
     def transition(self) -> Array:
@@ -206,9 +241,20 @@ class Stepper:
         found[1:] = kinks.unresolved(arguments[:-1], arguments[1:])
         return found
 
-    def integrate(
-        self, states: Array, memories: Array, steps: int, drive: StepDrive | None = None, similar: Array | None = None
-    ) -> Trajectory:
+    @cached_property
+    def _matrices(self) -> tuple[StepMatrices, ...]:
+        """One step of each kind."""
+        transition = np.concatenate([self.transition, self.steps[..., -1:]], axis=2)
+        parts = transition, self.by_state, self.by_force, self.directly_by_force, self.input_by_force
+        at_start = np.ascontiguousarray(self.inputs[..., -1])
+        transposed = [np.ascontiguousarray(np.swapaxes(part, 1, 2)) for part in parts]
+
+        return tuple(
+            StepMatrices._make((*matrices, self.forces.weights, float(length), self.has_surplus))
+            for *matrices, length in zip(*transposed, at_start, self.lengths, strict=True)
+        )
+
+    def integrate(self, states: Array, memories: Array, steps: int, drive: StepDrive | None = None) -> Trajectory:
         """Integrate motions from their initial states.
 
         Parameters
@@ -221,235 +267,35 @@ class Stepper:
             How many.
         drive
             What moves the vehicle from outside.
-        similar
-            Forces and surplus of similar motions, N, shape (step + 1, drop, 2 row): they save evaluations.
 
         Returns
         -------
         Trajectory
             Not finite from where a motion diverges.
         """
-        slots, (kind, slot) = self.slots, self.places
-        driven = None if drive is None else StepDrive(*(part[:, slots] for part in drive))
-        whole, kept, surplus = self.follow(
-            states[slots], memories[slots], steps, driven, None if similar is None else similar[:, slots]
+        # Loaded only where something is stepped: it takes half a second.
+        from sprung.vehicle.compiled_steps import follow_motion  # noqa: PLC0415
+
+        (drops, state), rows, laws = states.shape, self.forces.number, self.forces_at.table
+        motion = Motion(
+            np.ones((drops, steps + 1, state + rows + 1)),
+            np.empty((drops, steps + 1, self.forces.memories)),
+            np.zeros((drops, steps + 1, rows)),
         )
-        state = states.shape[1]
-        return Trajectory(
-            whole[:, kind, slot, :state], whole[:, kind, slot, state:-1], kept[:, kind, slot], surplus[:, kind, slot]
-        )
+        motion.whole[:, 0, :state], motion.memories[:, 0] = states, memories
+        increments, inputs = np.zeros((drops, 0, state)), np.zeros((drops, 0, 2 * rows))
+        if drive is not None:
+            increments, inputs = (np.ascontiguousarray(np.swapaxes(part, 0, 1)) for part in drive)
 
-    def follow(
-        self,
-        states: Array,
-        memories: Array,
-        steps: int,
-        drive: StepDrive | None = None,
-        similar: Array | None = None,
-        nearly: float = 0.0,
-    ) -> tuple[Array, Array, Array]:
-        """Follow motions that are arranged by kind.
+        def follow(drop: int) -> None:
+            own, step = Motion(*(part[drop] for part in motion)), self._matrices[self.kind[drop]]
+            follow_motion(step, laws, increments[drop], inputs[drop], _SOLVED, own)
 
-        Parameters
-        ----------
-        states, memories
-            As for `integrate`, shapes (kind, motion, state) and (kind, motion, memory).
-        steps
-            How many.
-        drive
-            What moves the vehicle from outside, arranged likewise.
-        similar
-            Forces and surplus of similar motions, N, shape (step + 1, kind, motion, 2 row).
-        nearly
-            Difference of forces from those that they were evaluated with, as a part of the largest, whose correction is not
-            evaluated again: it leaves about the square of it, where no kink lies between.
-
-        Returns
-        -------
-        motions
-            {x, u, 1}, shape (step + 1, kind, motion, state + row + 1).
-        memories
-            Shape (step + 1, kind, motion, memory).
-        surplus
-            N, shape (step + 1, kind, motion, row).
-        """
-        forces, shape = self.forces, states.shape[:2]
-        state, rows = states.shape[2], self.forces.number
-        # One product gives the end of a step without the forces there, and travels and rates there.
-        ends = np.concatenate([self.transition, self.steps[..., -1:]], axis=2)
-        inputs = self.by_state @ ends
-        inputs[..., -1] += self.inputs[..., -1]
-        predictor = _transposed(np.concatenate([ends, inputs], axis=1))
-        by_force = _transposed(self.by_force)
-        feedback = _Feedback.of(self.input_by_force, self.input_by_surplus)
-        motions = np.ones((steps + 1, *shape, state + rows + 1))
-        kept, surplus = np.empty((steps + 1, *shape, forces.memories)), np.zeros((steps + 1, *shape, rows))
-        motions[0, ..., :state], kept[0] = states, memories
-        # Forces are expected to go on as straight as they do, but for what those of the similar motions turn there.
-        alike, of_alike = np.zeros((2, *surplus.shape)) if similar is None else np.split(similar, 2, axis=-1)
-        turns = np.diff(alike, 2, axis=0, prepend=alike[:1])
-        predicted = np.empty((*shape, state + 2 * rows))
-        with np.errstate(over="ignore", invalid="ignore"):
-            by_state = _transposed(self.by_state)
-            at_start = states @ by_state + self.inputs[:, None, :, -1]
-            if drive is not None:
-                at_start += drive.inputs[0]
-            held = _Feedback.of(self.directly_by_force, self.input_by_surplus)
-            end = self._solve(at_start, None, memories, alike[0], surplus[0], held, nearly)
-            before = motions[0, ..., state:-1] = end.force
-            for k in range(steps):
-                np.matmul(motions[k], predictor, out=predicted)
-                if drive is not None:
-                    predicted[..., :state] += drive.increments[k]
-                    predicted[..., state:] += drive.increments[k] @ by_state + drive.inputs[k + 1]
-                expected, before = 2 * end.force - before + turns[k], end.force
-                end = self._solve(predicted[..., state:], end, kept[k], expected, of_alike[k + 1], feedback, nearly)
-                motions[k + 1, ..., state:-1], kept[k + 1], surplus[k + 1] = end.force, end.memory, end.surplus
-                moving = (end.force + end.surplus if self.has_surplus else end.force) @ by_force
-                np.add(predicted[..., :state], moving, out=motions[k + 1, ..., :state])
-        return motions, kept, surplus
-
-    def _solve(
-        self,
-        predicted: Array,
-        start: _End | None,
-        memories: Array,
-        force: Array,
-        surplus: Array,
-        feedback: _Feedback,
-        nearly: float,
-    ) -> _End:
-        """Return forces, memories and travels that depend on each other.
-
-        Parameters
-        ----------
-        predicted
-            Travels and rates without the forces, shape (kind, slot, 2 row).
-        start
-            The end of the step before; None where no step is taken.
-        memories
-            At the start of the step, shape (kind, slot, memory).
-        force, surplus
-            To begin with, shape (kind, slot, row).
-        feedback
-            What they add to travels and rates.
-        nearly
-            As for `follow`.
-        """
-        rows, memory_rows = force.shape[-1], self.forces.memory_rows
-        earlier: tuple[Array, Array] | None = None
-        missing = None
-        for left in reversed(range(_MOST_EVALUATIONS)):
-            inputs = predicted + force @ feedback.by_force
-            if start is not None and self.has_surplus:
-                inputs += surplus @ feedback.by_surplus
-            travel, rate = inputs[..., :rows], inputs[..., rows:]
-            increment = np.zeros_like(travel) if start is None else travel - start.inputs[..., :rows]
-            arguments = self.forces_at.kinks.arguments(inputs)
-            found = self.forces_at.evaluate(ElementInput(travel, rate, increment, memories), arguments)
-            error = found.force - force
-            size, largest = np.abs(error).max(initial=0.0), np.abs(found.force).max(initial=0.0)
-            if self.has_surplus and start is not None:
-                missing = self._surplus(start, inputs, arguments, found) - surplus
-                size = max(size, _OWN_EFFECT * np.abs(missing).max(initial=0.0))
-            if not left or not size > _SOLVED * largest:
-                surplus = surplus if missing is None else surplus + missing
-                return _End(found.force, found.memory, inputs, surplus, arguments, found)
-            by_travel = found.by_travel
-            if len(memory_rows):
-                by_travel = by_travel.copy()
-                by_travel[..., memory_rows] += found.by_memory * found.memory_by_travel
-            correction = _corrected(error, missing, by_travel, found.by_rate, feedback)
-            if earlier is not None:
-                # Where a kink lies between, Newton's method may go back and forth: the secant does not.
-                passed = error * earlier[1] < 0
-                secant = error * (force - earlier[0]) / np.where(passed, earlier[1] - error, 1.0)
-                correction = np.where(passed, secant, correction)
-            earlier, force = (force, error), force + correction
-            moved = correction @ feedback.by_force if size < nearly * largest else None
-            if missing is not None:
-                surplus = surplus + missing
-                moved = None if moved is None else moved + missing @ feedback.by_surplus
-            if moved is not None:
-                memory = found.memory + found.memory_by_travel * moved[..., memory_rows]
-                moved += inputs
-                return _End(force, memory, moved, surplus, self.forces_at.kinks.arguments(moved), found)
-        raise AssertionError("the last evaluation returns")
-
-    def _surplus(self, start: _End, inputs: Array, arguments: Array, end: ElementForce) -> Array:
-        """Return twice what the mean forces over a step are above the mean of those at both ends.
-
-        Parameters
-        ----------
-        start
-            Of the step.
-        inputs
-            Travels and rates at its end, shape (kind, slot, 2 row).
-        arguments
-            Of the kinks there, shape (kind, slot, kink).
-        end
-            Slopes of the forces there.
-
-        Returns
-        -------
-        ndarray
-            N, shape (kind, slot, row).
-        """
-        # The mean rate is the increment of the travel, and the ends of the rate tell how the travel is curved.
-        length, rows = self.lengths[:, None, None], end.force.shape[-1]
-        change = inputs - start.inputs
-        curved = mean_rate_offset(start.inputs, change, length)
-        surplus: Array = (start.slopes.by_rate + end.by_rate) * curved
-        if end.by_travel.any():
-            surplus -= (start.slopes.by_travel + end.by_travel) * (change[..., rows:] * (length / 12.0))
-        surplus += self.forces_at.kinks.surplus(start.arguments, arguments)
-        return surplus
-
-
-class _End(NamedTuple):
-    """The end of a step.
-
-    Attributes
-    ----------
-    force, memory, surplus
-        As in `Trajectory`, shape (kind, slot, row) or (kind, slot, memory).
-    inputs
-        Travels and rates, shape (kind, slot, 2 row).
-    arguments
-        Of the kinks, shape (kind, slot, kink).
-    slopes
-        Of the forces, where they were evaluated last.
-    """
-
-    force: Array
-    memory: Array
-    inputs: Array
-    surplus: Array
-    arguments: Array
-    slopes: ElementForce
-
-
-class _Feedback(NamedTuple):
-    """What forces add to travels and rates.
-
-    Attributes
-    ----------
-    by_force, by_surplus
-        Travels and rates by the forces and by their surplus, shape (kind, row, 2 row).
-    own_travel, own_rate
-        Those of each row by its own force, shape (kind, 1, row).
-    """
-
-    by_force: Array
-    by_surplus: Array
-    own_travel: Array
-    own_rate: Array
-
-    @classmethod
-    def of(cls, by_force: Array, by_surplus: Array) -> _Feedback:
-        """Arrange travels and rates by the forces and by their surplus, shape (kind, 2 row, row)."""
-        own = (np.diagonal(part, axis1=1, axis2=2)[:, None].copy() for part in np.split(by_force, 2, axis=1))
-        return cls(_transposed(by_force), _transposed(by_surplus), *own)
+        # Each drop may have a processor of its own.
+        with ThreadPoolExecutor(os.cpu_count()) as pool:
+            list(pool.map(follow, range(drops)))
+        whole, kept, surplus = (np.swapaxes(part, 0, 1) for part in motion)
+        return Trajectory(whole[..., :state], whole[..., state:-1], kept, surplus)
 
 
 def mean_rate_offset(start: Array, change: Array, length: Array) -> Array:
@@ -467,25 +313,3 @@ def mean_rate_offset(start: Array, change: Array, length: Array) -> Array:
     offset -= start[..., rows:]
     offset -= 0.5 * change[..., rows:]
     return offset
-
-
-def _corrected(error: Array, change: Array | None, by_travel: Array, by_rate: Array, feedback: _Feedback) -> Array:
-    """Return Newton's correction of forces with an error whose surplus changes, N, shape (kind, slot, row)."""
-    rows = error.shape[-1]
-
-    def answer(moved: Array) -> Array:
-        found: Array = by_travel * moved[..., :rows] + by_rate * moved[..., rows:]
-        return found
-
-    # The effect of a force on its own travel and rate comes first, then that of all on all others.
-    own = 1.0 - (by_travel * feedback.own_travel + by_rate * feedback.own_rate)
-    if change is not None:
-        error = error + answer(change @ feedback.by_surplus)
-    correction = error / own
-    further: Array = (error + answer(correction @ feedback.by_force) - correction) / own
-    return correction + further
-
-
-def _transposed(matrices: Array) -> Array:
-    """Return matrices for products from the right, contiguous."""
-    return np.ascontiguousarray(np.swapaxes(matrices, -1, -2))
