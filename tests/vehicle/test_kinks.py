@@ -5,14 +5,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from sprung.vehicle.compiled_slopes import differentiate_excess
 from sprung.vehicle.force_laws import GROUND, ElementInput
-from sprung.vehicle.kinks import KinkForces
+from sprung.vehicle.kinks import KinkForces, differentiate_fields
+from sprung.vehicle.nonlinear import FieldSlopes, LawTable, TableSlopes
 
 K, C = 2e5, 80.0
 """Of a tyre, N/m and N s/m."""
-
-PARAMETERS = np.array([[0], [1]])
-"""Their positions among the dependences."""
 
 ENDS = st.tuples(*(st.floats(-1.0, 1.0, width=16) for _ in range(4)))
 
@@ -20,8 +19,7 @@ ENDS = st.tuples(*(st.floats(-1.0, 1.0, width=16) for _ in range(4)))
 def ground(stiffness: float = K, damping: float = C) -> KinkForces:
     """Return the ground under one tyre, whose two parameters are the two dependences."""
     assert GROUND.kinks is not None
-    parameters = np.array([[stiffness], [damping]])
-    return KinkForces.of([(GROUND.kinks, np.array([0]), parameters, PARAMETERS)], 1, 2)
+    return KinkForces.of([(GROUND.kinks, np.array([0]), np.array([[stiffness], [damping]]))], 1)
 
 
 def force_of_tyre(height: float, rate: float) -> float:
@@ -68,8 +66,13 @@ def test_the_mean_of_the_ground_tells_its_own_derivatives(ends: tuple[float, ...
     def surplus(start: np.ndarray, end: np.ndarray, at: KinkForces = at) -> float:
         return float(at.surplus(at.arguments(start[None]), at.arguments(end[None]))[0, 0])
 
-    by_start, by_end, by_parameter = np.zeros((1, 2)), np.zeros((1, 2)), np.zeros((1, 2))
-    at.add_surplus_slopes(start[None], end[None], by_start, by_end, by_parameter)
+    by_start, by_end, by_parameter = (np.zeros((1, 2), dtype=np.float32) for _ in range(3))
+    laws = LawTable(np.stack([at.row_of, *at.kinks]), np.zeros((5, 0)), np.zeros((3, 0)))
+    none = [FieldSlopes.none(fields) for fields in (3, 1, 1)]
+    assert GROUND.kinks is not None
+    slopes = differentiate_fields(GROUND.kinks, np.array([[K], [C]]))[:5]
+    table = TableSlopes(FieldSlopes.of_law(slopes, 0, np.arange(2)[:, None, None]), *none)
+    differentiate_excess(laws, table, start, end, by_start[0], by_end[0], by_parameter[0])
     for which, scale in enumerate((1e-3, 1.0)):
         change = step * scale * np.eye(2)[which]
         width = 2 * step * scale

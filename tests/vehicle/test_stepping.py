@@ -42,7 +42,6 @@ from sprung.vehicle.force_laws import (
     ElementInput,
     ForceLaw,
 )
-from sprung.vehicle.stepping import mean_rate_offset
 
 Array = NDArray[np.float64]
 
@@ -322,7 +321,8 @@ def test_forces_memories_and_surplus_are_those_of_the_laws(extras: tuple[str, ..
         np.testing.assert_allclose(motion.forces[:, drop], found.force, atol=1e-6 * largest)
         np.testing.assert_allclose(motion.memories[:, drop], found.memory, atol=1e-5)
         kinks = own.forces_at.kinks
-        curved = mean_rate_offset(inputs[:-1], np.diff(inputs, axis=0), np.array(step))
+        mean_rate = np.diff(travel, axis=0) / step
+        curved = mean_rate - (rate[1:] + rate[:-1]) / 2
         by_rate, by_travel = (part[1:] + part[:-1] for part in (found.by_rate, found.by_travel))
         surplus = by_rate * curved - by_travel * np.diff(rate, axis=0) * step / 12
         arguments = kinks.arguments(inputs)

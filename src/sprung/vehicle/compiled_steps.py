@@ -236,7 +236,7 @@ def _evaluate(laws: LawTable, moves: bool, start: Array, end: Array, memories: A
         work[_FOUND, row] -= 0.5 * growth * x * x
         end[_BY_TRAVEL, row] -= growth * x
         if inverse_height != 0:
-            mean, slope = _air_ratio(inverse_height * x)
+            mean, slope = air_ratio(inverse_height * x)
             work[_FOUND, row] += rate * x * mean
             end[_BY_TRAVEL, row] += rate * (mean + inverse_height * x * slope)
     for i in range(end.shape[1]):
@@ -257,7 +257,7 @@ def _memory(before: float, increment: float, length: float) -> float:
 
 
 @compiled
-def _air_ratio(strain: float) -> tuple[float, float]:
+def air_ratio(strain: float) -> tuple[float, float]:
     """Return what the mean rate of an air spring is above that at rest, as a part of it, and its derivative by the strain."""
     n = POLYTROPIC_EXPONENT
     if fabs(strain) < SMALL_STRAIN:

@@ -123,7 +123,8 @@ class ForceLaw:
     differentiate
         Derivatives of force and memory by the law's parameters, each of shape (parameter, ..., element), from the same.
     steps
-        What its force is in time stepping, from the law's parameters: a curve or a friction. None for a sum of kinks.
+        What its force is in time stepping, from the law's parameters, which may be complex: a curve or a friction. None for a
+        sum of kinks.
     kinks
         Of a force that is the sum of these alone, from the law's parameters, which may be complex; None for any other.
     """
@@ -203,7 +204,9 @@ def _friction_derivatives(parameters: Array, given: ElementInput) -> tuple[Array
 
 
 def _as_friction(parameters: Array) -> Friction:
-    return Friction(parameters[0], _friction_length(parameters)[0])
+    force, stiffness = parameters
+    length = np.sign(force.real) * force / stiffness
+    return Friction(force, np.where(length.real > _SHORTEST, length, _SHORTEST))
 
 
 def _load_friction(parameters: Array, given: ElementInput) -> ElementForce:
@@ -219,7 +222,7 @@ def _load_friction_derivatives(parameters: Array, given: ElementInput) -> tuple[
 
 
 def _as_load_friction(parameters: Array) -> Friction:
-    return Friction(parameters[0], _friction_length(parameters[1:])[0])
+    return Friction(parameters[0], _as_friction(parameters[1:]).length)
 
 
 def _uneven_friction(side: float, parameters: Array, given: ElementInput) -> ElementForce:
@@ -235,7 +238,7 @@ def _uneven_friction_derivatives(side: float, parameters: Array, given: ElementI
 
 
 def _as_uneven_friction(side: float, parameters: Array) -> Friction:
-    return Friction(parameters[1] + side * parameters[0], _friction_length(parameters[1:])[0])
+    return Friction(parameters[1] + side * parameters[0], _as_friction(parameters[1:]).length)
 
 
 def _rebound_kinks(parameters: Array) -> Kinks:

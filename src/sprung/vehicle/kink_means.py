@@ -21,16 +21,8 @@ def sharp_excess(before: Array, after: Array) -> Array:
     return found
 
 
-def sharp_excess_slopes(before: Array, after: Array) -> tuple[Array, Array]:
-    """Return the derivatives of `sharp_excess` by both ends."""
-    change = after - before
-    crossed = before * after < 0
-    unit = np.sign(change) * crossed / np.where(crossed, change, 1.0) ** 2
-    return unit * after**2, -unit * before**2
-
-
-def excess_in_the_air(u: Array, v: Array, x: Array, y: Array) -> tuple[Array, Array, Array, Array, Array]:
-    """Return twice the mean of max(u, 0) where x > 0, less the sum of both ends; and its derivatives by all arguments.
+def excess_in_the_air(u: Array, v: Array, x: Array, y: Array) -> Array:
+    """Return twice the mean of max(u, 0) where x > 0, less the sum of both ends.
 
     Parameters
     ----------
@@ -39,7 +31,7 @@ def excess_in_the_air(u: Array, v: Array, x: Array, y: Array) -> tuple[Array, Ar
     x, y
         The travel likewise.
     """
-    first, last, passes = np.zeros_like(u), np.ones_like(u), np.zeros_like(u)
+    first, last = np.zeros_like(u), np.ones_like(u)
     for one, other in ((u, v), (x, y)):
         begins, ends = (one <= 0) & (other > 0), (one > 0) & (other <= 0)
         passes = one / np.where(begins | ends, one - other, 1.0)
@@ -47,38 +39,18 @@ def excess_in_the_air(u: Array, v: Array, x: Array, y: Array) -> tuple[Array, Ar
         last = np.where(ends, np.minimum(last, passes), np.where(begins | (one > 0), last, 0.0))
     duration, middle = np.maximum(last - first, 0.0), 0.5 * (first + last)
     start, end = (u > 0) & (x > 0), (v > 0) & (y > 0)
-    by_end = duration * middle
-    # Where the travel passes zero while the argument is above it, the travel says how long the force acts.
-    change = np.where((x > 0) != (y > 0), x - y, np.inf)
-    lost = np.maximum(u + (v - u) * passes, 0.0) / change**2
-    return (
-        2.0 * (u * duration + (v - u) * by_end) - u * start - v * end,
-        2.0 * (duration - by_end) - start,
-        2.0 * by_end - end,
-        2.0 * lost * np.abs(y),
-        2.0 * lost * np.abs(x),
-    )
+    found: Array = 2.0 * duration * (u + (v - u) * middle) - u * start - v * end
+    return found
 
 
-def rounded_excess(before: Array, after: Array, width: Array) -> tuple[Array, Array, Array, Array]:
-    """Return the same of (u + sqrt(u² + w²))/2, and its derivatives by both ends and by the width w."""
+def rounded_excess(before: Array, after: Array, width: Array) -> Array:
+    """Return the same of (u + sqrt(u² + w²))/2."""
     roots = np.hypot(before, width), np.hypot(after, width)
     change = after - before
     moves = np.abs(change) > STILL * np.minimum(*roots)
-    safe = np.where(moves, change, 1.0)
-    ends, slopes, by_width, wholes, of_width = [], [], [], [], []
-    for u, root in zip((before, after), roots, strict=True):
-        turned = width * np.arcsinh(u / width)
-        ends.append(0.5 * (u + root))
-        slopes.append(0.5 * (1.0 + u / root))
-        by_width.append(0.5 * width / root)
-        wholes.append(0.25 * (u**2 + u * root + width * turned))
-        of_width.append(0.5 * turned)
-    mean, mean_by_width = (wholes[1] - wholes[0]) / safe, (of_width[1] - of_width[0]) / safe
-    found = (
-        2.0 * mean - ends[0] - ends[1],
-        2.0 * (mean - ends[0]) / safe - slopes[0],
-        2.0 * (ends[1] - mean) / safe - slopes[1],
-        2.0 * mean_by_width - by_width[0] - by_width[1],
-    )
-    return found[0] * moves, found[1] * moves, found[2] * moves, found[3] * moves
+    wholes = [
+        u**2 + u * root + width**2 * np.arcsinh(u / width) for u, root in zip((before, after), roots, strict=True)
+    ]
+    twice_mean = 0.5 * (wholes[1] - wholes[0]) / np.where(moves, change, 1.0)
+    found: Array = (twice_mean - 0.5 * (before + roots[0] + after + roots[1])) * moves
+    return found

@@ -21,7 +21,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.vehicle.kink_means import excess_in_the_air, rounded_excess, sharp_excess, sharp_excess_slopes
+from sprung.vehicle.kink_means import excess_in_the_air, rounded_excess, sharp_excess
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -71,9 +71,14 @@ _FIELDS = len(Kinks._fields)
 
 def differentiate_kinks(kinks_of: Callable[[Array], Kinks], parameters: Array) -> Kinks:
     """Differentiate kinks by the parameters of their law, shape (parameter, element): each (parameter, kink, element)."""
+    return Kinks(*differentiate_fields(kinks_of, parameters))
+
+
+def differentiate_fields(fields_of: Callable[[Array], Sequence[Array]], parameters: Array) -> Array:
+    """Differentiate fields of a law by its parameters, shape (parameter, element): (field, parameter, ..., element)."""
     moved = parameters + 1j * _COMPLEX_STEP * np.eye(len(parameters))[:, :, None]
-    slopes = [np.array(kinks_of(own)).imag / _COMPLEX_STEP for own in moved]
-    return Kinks(*np.stack(slopes, axis=1))
+    slopes: Array = np.stack([np.array(fields_of(own)).imag for own in moved], axis=1) / _COMPLEX_STEP
+    return slopes
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,43 +93,30 @@ class KinkForces:
         Of rows.
     kinks
         Shape (kink,) each.
-    laws
-        Of each law with kinks its kinks by its parameters, the rows of its elements, shape (element,), the parameters, shape
-        (parameter, element), and their positions among the dependences of all forces on parameters.
-    dependences
-        How many there are.
     """
 
     row_of: Index
     number: int
     kinks: Kinks
-    laws: Sequence[tuple[Callable[[Array], Kinks], Index, Array, Index]]
-    dependences: int
 
     @classmethod
-    def of(
-        cls, laws: Sequence[tuple[Callable[[Array], Kinks], Index, Array, Index]], number: int, dependences: int
-    ) -> KinkForces:
-        """Collect the kinks of laws of elements with a number of rows, arguments as the attributes."""
+    def of(cls, laws: Sequence[tuple[Callable[[Array], Kinks], Index, Array]], number: int) -> KinkForces:
+        """Collect the kinks of laws of elements with a number of rows.
+
+        Parameters
+        ----------
+        laws
+            Of each the kinks by its parameters, the rows of its elements, shape (element,), and the parameters, shape
+            (parameter, element).
+        number
+            Of rows.
+        """
         parts, on = [np.zeros((_FIELDS, 0))], [np.zeros(0, dtype=np.int64)]
-        for kinks_of, at, parameters, _ in laws:
+        for kinks_of, at, parameters in laws:
             found = np.array(kinks_of(parameters))
             parts.append(found.reshape(_FIELDS, -1))
             on.append(np.tile(at, found.shape[1]))
-        return cls(np.concatenate(on), number, Kinks(*np.concatenate(parts, 1)), laws, dependences)
-
-    @cached_property
-    def slopes(self) -> Kinks:
-        """Derivatives of the kinks by parameters, shape (kink, dependence) each: of each, those of its row."""
-        slopes = [np.zeros((_FIELDS, 0, self.dependences))]
-        for kinks_of, _, parameters, positions in self.laws:
-            by_parameter = np.array(differentiate_kinks(kinks_of, parameters))
-            _, _, kinks, elements = by_parameter.shape
-            whole = np.zeros((_FIELDS, kinks, elements, self.dependences))
-            for which, columns in enumerate(positions):
-                whole[:, :, np.arange(elements), columns] += by_parameter[:, which]
-            slopes.append(whole.reshape(_FIELDS, -1, self.dependences))
-        return Kinks(*np.concatenate(slopes, 1))
+        return cls(np.concatenate(on), number, Kinks(*np.concatenate(parts, 1)))
 
     @cached_property
     def _aloft(self) -> Index:
@@ -147,16 +139,9 @@ class KinkForces:
         return np.concatenate([self.kinks.position, np.zeros(len(self._aloft))])
 
     @cached_property
-    def _is_on_row(self) -> NDArray[np.bool_]:
-        """Whether each argument is on each row, shape (kink + kink in the air, row)."""
-        rows = np.concatenate([self.row_of, self.row_of[self._aloft]])
-        is_on_row: NDArray[np.bool_] = rows[:, None] == np.arange(self.number)
-        return is_on_row
-
-    @cached_property
     def _by_hinge(self) -> Array:
         """Force of each row by how far arguments are above their positions, shape (kink, row)."""
-        return np.where(self._is_on_row[: len(self.row_of)], self.kinks.jump[:, None], 0.0)
+        return np.where(self.row_of[:, None] == np.arange(self.number), self.kinks.jump[:, None], 0.0)
 
     @cached_property
     def _by_slope(self) -> Array:
@@ -214,11 +199,6 @@ class KinkForces:
             slopes[..., self._aloft] *= is_aloft
         return values, slopes
 
-    def lie_between(self, one: Array, other: Array) -> NDArray[np.bool_]:
-        """Return in which rows a kink lies between two inputs, shape (..., 2 row): travels and rates of all rows."""
-        passed: NDArray[np.bool_] = self.arguments(one) * self.arguments(other) < 0
-        return np.asarray(passed @ self._is_on_row)
-
     def surplus(self, before: Array, after: Array) -> Array:
         """Return the additions to the force at the end of a step, N, shape (..., row).
 
@@ -247,57 +227,11 @@ class KinkForces:
         u, v = before[..., :number], after[..., :number]
         excess = sharp_excess(u, v)
         if at.any():
-            excess[..., at] = rounded_excess(u[..., at], v[..., at], self.kinks.width[at])[0]
+            excess[..., at] = rounded_excess(u[..., at], v[..., at], self.kinks.width[at])
         if self._aloft.size:
             travels = before[..., number:], after[..., number:]
-            excess[..., self._aloft] = excess_in_the_air(u[..., self._aloft], v[..., self._aloft], *travels)[0]
+            excess[..., self._aloft] = excess_in_the_air(u[..., self._aloft], v[..., self._aloft], *travels)
         return excess
-
-    def add_surplus_slopes(
-        self, before: Array, after: Array, by_before: Array, by_after: Array, by_parameter: Array
-    ) -> None:
-        """Add the derivatives of the same forces.
-
-        Parameters
-        ----------
-        before, after
-            Travels and rates of all rows at the start and at the end of steps, shape (..., 2 row).
-        by_before, by_after
-            Derivatives by these, to which those of the kinks are added in place, shape (..., 2 row).
-        by_parameter
-            Likewise of each dependence on a parameter, shape (..., dependence).
-        """
-        number, slopes = len(self.row_of), np.array(self.slopes)
-        starts, ends = self.arguments(before), self.arguments(after)
-        # Few steps pass a sharp kink: only these are computed.
-        passed = starts * ends < 0
-        passed[..., self._aloft] |= passed[..., number:]
-        passed[..., :number] |= self._is_rounded
-        for kink, (row, jump, width) in enumerate(zip(self.row_of, self.kinks.jump, self.kinks.width, strict=True)):
-            step = np.nonzero(passed[..., kink])
-            u, v = starts[(*step, kink)], ends[(*step, kink)]
-            by_width, by_start, by_end = np.zeros((3, len(u)))
-            if self.kinks.in_the_air[kink]:
-                of_travel = number + int(np.searchsorted(self._aloft, kink))
-                travels = starts[(*step, of_travel)], ends[(*step, of_travel)]
-                excess, by_u, by_v, by_start, by_end = excess_in_the_air(u, v, *travels)
-            elif width > 0:
-                excess, by_u, by_v, by_width = rounded_excess(u, v, width)
-            else:
-                excess, by_u, by_v = sharp_excess(u, v), *sharp_excess_slopes(u, v)
-            own = np.flatnonzero(slopes[:, kink].any(axis=0))
-            moved = Kinks(*slopes[:, kink][:, own])
-            of_parameters = np.outer(excess, moved.jump) + jump * np.outer(by_width, moved.width)
-            for by_argument, directly, inputs, total in (
-                (by_u, by_start, before, by_before),
-                (by_v, by_end, after, by_after),
-            ):
-                travel, rate = (*step, row), (*step, self.number + row)
-                of_argument = np.outer(inputs[travel], moved.by_travel) + np.outer(inputs[rate], moved.by_rate)
-                of_parameters += jump * by_argument[:, None] * (of_argument - moved.position)
-                total[travel] += jump * (by_argument * self.kinks.by_travel[kink] + directly)
-                total[rate] += jump * by_argument * self.kinks.by_rate[kink]
-            by_parameter[(*(part[:, None] for part in step), own)] += of_parameters
 
 
 def hinge(above: Array, position: Array, width: Array) -> tuple[Array, Array, Array, Array]:

@@ -20,7 +20,7 @@ from sprung.vehicle.elements import Element
 from sprung.vehicle.force_laws import ElementForce, ElementInput, ForceLaw
 from sprung.vehicle.heights import LEVEL, Heights
 from sprung.vehicle.kinematics import state_variables
-from sprung.vehicle.kinks import KinkForces
+from sprung.vehicle.kinks import KinkForces, differentiate_fields
 from sprung.vehicle.load import EMPTY, Load
 from sprung.vehicle.model import LinearModel, Matrices, Rows, highest_derivatives, state_matrix
 from sprung.vehicle.nonlinear_elements import NonlinearElement
@@ -62,12 +62,6 @@ class Dependences(NamedTuple):
         size = 1 + max(self.parameters.max(initial=0), int(np.max(parameters, initial=0)))
         found: Index = np.searchsorted(self.which * size + self.parameters, which * size + parameters)
         return found
-
-    def add(self, total: Array, which: Index, parameters: Index, slopes: Array) -> None:
-        """Add slopes (parameter, ..., element) of a law to those of all pairs, shape (dependence, ...)."""
-        entries = self.find(which, parameters)
-        for parameter, element in np.ndindex(*entries.shape):
-            total[entries[parameter, element]] += slopes[parameter][..., element]
 
 
 class NonlinearForces(NamedTuple):
@@ -158,39 +152,34 @@ class NonlinearForces(NamedTuple):
 
     def at(self, values: Array) -> ForcesAt:
         """Return the forces at all parameters, SI, shape (parameter,)."""
-        every, dependences = np.arange(self.number), self.dependences
+        every = np.arange(self.number)
         bent = [
-            (law.kinks, every[at], values[positions], dependences.find(every[at], positions))
-            for law, at, _, positions in self.laws
-            if law.kinks is not None
+            (law.kinks, every[at], values[positions]) for law, at, _, positions in self.laws if law.kinks is not None
         ]
         others = tuple((law, at, own, values[positions]) for law, at, own, positions in self.laws if law.kinks is None)
-        return ForcesAt(self.number, others, KinkForces.of(bent, self.number, len(dependences.which)))
+        return ForcesAt(self.number, others, KinkForces.of(bent, self.number))
 
-    def differentiate(self, values: Array, given: ElementInput) -> tuple[Array, Array]:
-        """Return the derivatives of forces and of memories by the parameters of the laws.
-
-        Parameters
-        ----------
-        values
-            Parameters, SI, shape (parameter,).
-        given
-            Input by row, shape (..., row), and memories, shape (..., memory).
-
-        Returns
-        -------
-        force, memory
-            Of the `dependences` and `memory_dependences`, shapes (dependence, ...).
-        """
+    def table_slopes(self, values: Array) -> TableSlopes:
+        """Differentiate the coefficients of `ForcesAt.table` by all parameters, SI, shape (parameter,)."""
+        rows, memories = np.arange(self.number), np.arange(self.memories)
         of_forces, of_memories = self.dependences, self.memory_dependences
-        force = np.zeros((len(of_forces.which), *given.travel.shape[:-1]))
-        memory = np.zeros((len(of_memories.which), *given.travel.shape[:-1]))
+        kinks, curves, frictions, lengths = ([FieldSlopes.none(fields)] for fields in (5, 3, 1, 1))
+        first_kink = first_curve = 0
         for law, at, own, positions in self.laws:
-            of_force, of_memory = law.differentiate(values[positions], _part(given, law, at, own))
-            of_forces.add(force, np.arange(self.number)[at], positions, of_force)
-            if law.has_memory:
-                of_memories.add(memory, np.arange(self.memories)[own], positions, of_memory)
-        return force, memory
+            to, parameters = of_forces.find(rows[at], positions), values[positions]
+            if law.kinks is not None:
+                slopes = differentiate_fields(law.kinks, parameters)[:5]
+                kinks.append(FieldSlopes.of_law(slopes, first_kink, to[:, None]))
+                first_kink += slopes[0, 0].size
+            elif law.steps is not None and law.has_memory:
+                force, length = differentiate_fields(law.steps, parameters)
+                frictions.append(FieldSlopes.of_law(force[None], own.start, to))
+                lengths.append(FieldSlopes.of_law(length[None], own.start, of_memories.find(memories[own], positions)))
+            elif law.steps is not None:
+                growth, _, rate, inverse_height = differentiate_fields(law.steps, parameters)
+                curves.append(FieldSlopes.of_law(np.stack([growth, rate, inverse_height]), first_curve, to))
+                first_curve += growth[0].size
+        return TableSlopes(*map(FieldSlopes.joined, (kinks, curves, frictions, lengths)))
 
 
 class LawTable(NamedTuple):
@@ -209,6 +198,75 @@ class LawTable(NamedTuple):
     kinks: Array
     curves: Array
     frictions: Array
+
+
+class FieldSlopes(NamedTuple):
+    """Slopes of coefficients of laws by the parameters that they depend on, one column for each pair.
+
+    Attributes
+    ----------
+    of
+        Which kink, curve or friction, in ascending order, shape (pair,).
+    to
+        To which of the dependences of forces or memories on parameters it belongs, shape (pair,).
+    slopes
+        Of the coefficients, shape (field, pair).
+    """
+
+    of: Index
+    to: Index
+    slopes: Array
+
+    @classmethod
+    def none(cls, fields: int) -> FieldSlopes:
+        """Return the slopes of no law with so many fields."""
+        return cls(np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64), np.zeros((fields, 0)))
+
+    @classmethod
+    def of_law(cls, slopes: Array, first: int, to: Index) -> FieldSlopes:
+        """Arrange slopes of a law.
+
+        Parameters
+        ----------
+        slopes
+            Shape (field, parameter, ..., element).
+        first
+            Which kink, curve or friction of all laws its first one is.
+        to
+            Dependences, of a shape that goes together with (parameter, ..., element).
+        """
+        which = np.broadcast_to(first + np.arange(slopes[0, 0].size).reshape(slopes.shape[2:]), slopes.shape[1:])
+        of, flat = which.ravel(), slopes.reshape(len(slopes), -1)
+        own = np.flatnonzero(flat.any(axis=0))
+        own = own[np.argsort(of[own], kind="stable")]
+        return cls(of[own], np.broadcast_to(to, slopes.shape[1:]).ravel()[own], flat[:, own])
+
+    @classmethod
+    def joined(cls, laws: Sequence[FieldSlopes]) -> FieldSlopes:
+        """Join those of several laws, in their order."""
+        of, to, slopes = zip(*laws, strict=True)
+        return cls(np.concatenate(of), np.concatenate(to), np.concatenate(slopes, axis=1))
+
+
+class TableSlopes(NamedTuple):
+    """Slopes of the coefficients of a `LawTable` by parameters.
+
+    Attributes
+    ----------
+    kinks
+        Of the fields of `Kinks` but the last.
+    curves
+        Of growth, rate and inverse height.
+    frictions
+        Of the force.
+    memories
+        Of the length of frictions, to the dependences of memories.
+    """
+
+    kinks: FieldSlopes
+    curves: FieldSlopes
+    frictions: FieldSlopes
+    memories: FieldSlopes
 
 
 class ForcesAt(NamedTuple):

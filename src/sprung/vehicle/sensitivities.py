@@ -12,9 +12,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.vehicle.force_laws import ElementForce, ElementInput
 from sprung.vehicle.nonlinear import Dependences
-from sprung.vehicle.stepping import Stepper, Trajectory, mean_rate_offset
+from sprung.vehicle.stepping import Stepper, Trajectory
 
 Array = NDArray[np.float64]
 Single = NDArray[np.float32]
@@ -125,8 +124,7 @@ def differentiate_motion(stepper: Stepper, trajectory: Trajectory, drop: int, ou
     drop
         Which of them, by its position.
     outputs
-        Linear functions of {x, u}, SI, shape (output, state + row). What parameters change in these functions themselves is left
-        to the caller.
+        Linear functions of {x, u}, SI, shape (output, state + row). What parameters change in them is left to the caller.
     every
         Steps from one reading to the next.
 
@@ -138,25 +136,24 @@ def differentiate_motion(stepper: Stepper, trajectory: Trajectory, drop: int, ou
     # Loaded only where something is stepped: it takes half a second.
     from sprung.vehicle.compiled_changes import follow_changes  # noqa: PLC0415
 
-    own = stepper.of_drop(drop)
+    kind = stepper.kind[drop]
     with np.errstate(over="ignore", invalid="ignore"):
         states, forces, memories, surplus = (part[:, drop] for part in trajectory)
         motion = np.concatenate([states, forces, np.ones((len(states), 1))], axis=1)
-        travel, rate = np.split(motion @ own.inputs[0].T, 2, axis=1)
-        # As of the step that ends at each.
-        before = np.concatenate([memories[:1], memories[:-1]])
-        given = ElementInput(travel, rate, np.diff(travel, axis=0, prepend=travel[:1]), before)
-        slopes = _force_slopes(own, given)
+        slopes = _force_slopes(
+            stepper, motion @ stepper.inputs[kind].T, np.ascontiguousarray(memories), stepper.lengths[kind]
+        )
         pushed = forces[1:] + surplus[1:]
-        ends = _direct_changes(own.step_slopes[0], np.hstack([motion[:-1, :-1], pushed, motion[:-1, -1:]]))
-        inputs = _direct_changes(own.input_slopes[0], motion)
-    matrices = own.transition, own.by_state, own.by_force, own.directly_by_force, own.input_by_force, outputs[None]
-    starts, parameters = own.starts, len(own.values)
+        ends = _direct_changes(stepper.step_slopes[kind], np.hstack([motion[:-1, :-1], pushed, motion[:-1, -1:]]))
+        inputs = _direct_changes(stepper.input_slopes[kind], motion)
+    by_force = stepper.by_force, stepper.directly_by_force, stepper.input_by_force
+    matrices = (part[kind] for part in (stepper.transition, stepper.by_state, *by_force))
+    starts, parameters = stepper.starts, len(stepper.values)
     unknowns = parameters + starts
     filled_up = -(-unknowns // _SIDE_BY_SIDE) * _SIDE_BY_SIDE
     readings = np.empty(((len(states) - 1) // every + 1, len(outputs), filled_up), dtype=np.float32)
     follow_changes(
-        ChangeMatrices(*(np.ascontiguousarray(part[0], dtype=np.float32) for part in matrices)),
+        ChangeMatrices(*(np.ascontiguousarray(part, dtype=np.float32) for part in (*matrices, outputs))),
         slopes,
         ends,
         inputs,
@@ -177,80 +174,45 @@ def _direct_changes(slopes: Array, arguments: Array) -> DirectChanges:
     return DirectChanges(int(first), changes.reshape(len(arguments), slopes.shape[1], -1))
 
 
-def _law_slopes(dependences: Dependences, slopes: Array) -> LawSlopes:
-    """Arrange slopes by parameters, shape (dependence, step)."""
-    return LawSlopes(dependences.which, dependences.parameters, _single(slopes.T))
-
-
-def _single(values: Array) -> Single:
-    return np.ascontiguousarray(values, dtype=np.float32)
-
-
-def _force_slopes(stepper: Stepper, given: ElementInput) -> ForceSlopes:
-    """Evaluate the slopes of the forces along the motion of one drop."""
-    forces, found = stepper.forces, stepper.forces_at.evaluate(given)
-    by_increment = found.memory_by_travel.copy()
-    by_increment[0] = 0.0
-    by_travel = found.by_travel.copy()
-    by_travel[:, forces.memory_rows] += found.by_memory * by_increment
-    of_forces, of_memories = forces.differentiate(stepper.values, given)
-    none = np.zeros((0, 2 * forces.number)), np.zeros((0, 2 * forces.number)), of_forces[:, :0]
-    surplus = _surplus_slopes(stepper, found, given, of_forces) if stepper.has_surplus else none
-    return ForceSlopes(
-        _single(by_travel),
-        _single(found.by_rate),
-        forces.memory_rows,
-        _single(np.broadcast_to(found.by_memory, by_increment.shape)),
-        _single(by_increment),
-        _single(found.memory_by_memory),
-        _law_slopes(forces.dependences, of_forces),
-        _law_slopes(forces.memory_dependences, of_memories),
-        _single(surplus[0]),
-        _single(surplus[1]),
-        _law_slopes(forces.dependences, surplus[2]),
-    )
-
-
-def _surplus_slopes(
-    stepper: Stepper, found: ElementForce, given: ElementInput, of_forces: Array
-) -> tuple[Array, Array, Array]:
-    """Differentiate the surplus of each step.
+def _force_slopes(stepper: Stepper, inputs: Array, memories: Array, length: float) -> ForceSlopes:
+    """Differentiate forces, memories and surplus along a motion.
 
     Parameters
     ----------
     stepper
         What stepped.
-    found
-        Forces at each step, with their slopes.
-    given
-        Of these.
-    of_forces
-        Derivatives of the forces by the parameters of the laws, shape (dependence, step + 1).
-
-    Returns
-    -------
-    by_start, by_end
-        By travels and rates of all rows at both ends, shape (step, 2 row).
-    by_parameter
-        By the parameters of the laws, shape (dependence, step).
+    inputs
+        Travels and rates of all rows, SI, shape (step + 1, 2 row).
+    memories
+        At the end of each step, shape (step + 1, memory).
+    length
+        Of a step, s.
     """
-    kinks, length = stepper.forces_at.kinks, stepper.lengths[0]
-    inputs = np.concatenate([given.travel, given.rate], axis=-1)
-    rows = given.travel.shape[-1]
-    by_rate, by_travel = (part[1:] + part[:-1] for part in (found.by_rate, found.by_travel))
-    by_travel = by_travel * (length / 12.0)
-    by_start = np.concatenate([-by_rate / length, by_travel - 0.5 * by_rate], axis=-1)
-    by_end = np.concatenate([by_rate / length, -by_travel - 0.5 * by_rate], axis=-1)
-    # Of the slopes, their change by the parameters times what means of travels and rates are more than those of both ends.
-    start, end = inputs[:-1], inputs[1:]
-    change = end - start
-    curved = end.copy()
-    curved[..., :rows] -= (length / 12.0) * change[..., rows:]
-    curved[..., rows:] += mean_rate_offset(start, change, length)
-    of_means = ElementInput(curved[..., :rows], curved[..., rows:], given.increment[1:], given.memory[1:])
-    by_parameter = 2.0 * (stepper.forces.differentiate(stepper.values, of_means)[0] - of_forces[:, 1:])
-    # Where a kink lies between both, their difference is not that of one slope.
-    passed = kinks.lie_between(end, curved)[..., stepper.forces.dependences.which]
-    by_parameter = np.where(passed, 0.0, np.moveaxis(by_parameter, 0, -1))
-    kinks.add_surplus_slopes(start, end, by_start, by_end, by_parameter)
-    return by_start, by_end, np.moveaxis(by_parameter, -1, 0)
+    # Loaded only where something is stepped: it takes half a second.
+    from sprung.vehicle.compiled_slopes import differentiate_forces  # noqa: PLC0415
+
+    forces, steps = stepper.forces, len(inputs)
+    rows, with_surplus = forces.number, (steps - 1) * stepper.has_surplus
+
+    def zeros(number: int, columns: int) -> Single:
+        return np.zeros((number, columns), dtype=np.float32)
+
+    def by_parameters(dependences: Dependences, number: int) -> LawSlopes:
+        which, parameters = dependences
+        return LawSlopes(which, parameters, zeros(number, len(which)))
+
+    slopes = ForceSlopes(
+        zeros(steps, rows),
+        zeros(steps, rows),
+        forces.memory_rows,
+        zeros(steps, forces.memories),
+        zeros(steps, forces.memories),
+        zeros(steps, forces.memories),
+        by_parameters(stepper.dependences[0], steps),
+        by_parameters(stepper.dependences[1], steps),
+        zeros(with_surplus, 2 * rows),
+        zeros(with_surplus, 2 * rows),
+        by_parameters(stepper.dependences[0], with_surplus),
+    )
+    differentiate_forces(stepper.laws, stepper.law_slopes, inputs, memories, float(length), slopes)
+    return slopes

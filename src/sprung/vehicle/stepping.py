@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.vehicle.nonlinear import ForcesAt, NonlinearForces, NonlinearModel
+from sprung.vehicle.nonlinear import Dependences, ForcesAt, LawTable, NonlinearForces, NonlinearModel, TableSlopes
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -183,6 +183,21 @@ class Stepper:
         return self.forces.at(self.values)
 
     @cached_property
+    def laws(self) -> LawTable:
+        """Coefficients of the laws, for the loops over steps."""
+        return self.forces_at.table
+
+    @cached_property
+    def law_slopes(self) -> TableSlopes:
+        """Their slopes by the parameters."""
+        return self.forces.table_slopes(self.values)
+
+    @cached_property
+    def dependences(self) -> tuple[Dependences, Dependences]:
+        """Which forces, and which memories, follow which parameters by the laws."""
+        return self.forces.dependences, self.forces.memory_dependences
+
+    @cached_property
     def has_surplus(self) -> bool:
         """Whether forces have a surplus: not if all are friction, nor where rates jump with forces, as behind mounts."""
         return not self.directly_by_force.any() and not all(law.has_memory for law, *_ in self.forces.laws)
@@ -276,7 +291,7 @@ class Stepper:
         # Loaded only where something is stepped: it takes half a second.
         from sprung.vehicle.compiled_steps import follow_motion  # noqa: PLC0415
 
-        (drops, state), rows, laws = states.shape, self.forces.number, self.forces_at.table
+        (drops, state), rows, laws = states.shape, self.forces.number, self.laws
         motion = Motion(
             np.ones((drops, steps + 1, state + rows + 1)),
             np.empty((drops, steps + 1, self.forces.memories)),
@@ -296,20 +311,3 @@ class Stepper:
             list(pool.map(follow, range(drops)))
         whole, kept, surplus = (np.swapaxes(part, 0, 1) for part in motion)
         return Trajectory(whole[..., :state], whole[..., state:-1], kept, surplus)
-
-
-def mean_rate_offset(start: Array, change: Array, length: Array) -> Array:
-    """Return what mean rates over steps are above the mean of those at both ends, m/s, shape (..., row).
-
-    Parameters
-    ----------
-    start, change
-        Travels and rates at the start, and their changes over the step, shape (..., 2 row).
-    length
-        Of the steps, s.
-    """
-    rows = start.shape[-1] // 2
-    offset: Array = change[..., :rows] / length
-    offset -= start[..., rows:]
-    offset -= 0.5 * change[..., rows:]
-    return offset
