@@ -97,3 +97,13 @@ def test_a_start_that_grows_beyond_all_bounds_is_begun_without_what_makes_it_gro
         ).loglikelihood
 
     np.testing.assert_allclose(found(relaxing), found(relaxing | {"k_xf": 0.0}), atol=1e-3)
+
+
+def test_a_start_with_a_mass_below_zero_is_begun_with_a_small_one() -> None:
+    """An engine of no mass at all on its mounts would have no equation of motion."""
+    engine = {"m_e": -20.0, "k_e": 5e4, "c_e": 500.0, "x_e": 0.4}
+    campaign = simulate(TABLE_1_CAR, noise=0.02, seed=1, known={"total_mass": TABLE_1_CAR.total_mass})
+    structure = choose_structure(campaign, "shared", ("engine",))
+    start, decays = TABLE_1_CAR.parameters | engine, prepare(campaign).decays
+    fit = fit_linear(decays, structure.linear_models, campaign.sensors, structure.known, start=start)
+    assert np.isfinite(fit.loglikelihood)

@@ -67,6 +67,9 @@ _WELL_KNOWN = 1e4
 _DISTANCES, _FARTHEST, _PROBED = (4.0, 8.0), 0.5, 2
 """How far to probe, in standard errors and in logarithms, and along how many directions."""
 
+_LIGHTEST = 1e-4
+"""Mass of a part with a motion of its own, as a part of the sprung mass, where another fit found it below zero."""
+
 _SHALLOW = 0.5
 """Part of the fall that the curvature says, below which another fit starts there."""
 
@@ -195,9 +198,17 @@ def _fit_from(
     end = problem.maximise(problem.priors.nearest(values), None, enough, CLOSE_BY, most, weights=weights)
     if not np.isfinite(problem.cost(end.point)):
         # A rate that another fit found below zero may make a motion that grows beyond all bounds in this one.
-        bounded = {name: value if parameter_of(name).signed else max(value, 0.0) for name, value in values.items()}
+        bounded = {name: _possible(name, value, values["m_s"]) for name, value in values.items()}
         end = problem.maximise(problem.priors.nearest(bounded), None, enough, CLOSE_BY, most)
     return _best(problem, [end], enough)
+
+
+def _possible(name: str, value: float, mass: float) -> float:
+    """Return the nearest value that a part of a vehicle with a sprung mass, kg, can have: without any mass it has no motion."""
+    parameter = parameter_of(name)
+    if parameter.signed:
+        return value
+    return max(value, _LIGHTEST * mass if parameter.unit == "kg" else 0.0)
 
 
 def _best(problem: EstimationProblem, ends: Sequence[Maximum[Iterate]], enough: float) -> FitResult:
