@@ -84,7 +84,7 @@ def follow_changes(
                 effect[i, j] = -slopes.by_travel[k, i] * at_end[i, j] - slopes.by_rate[k, i] * at_end[rows + i, j]
             effect[i, i] += np.float32(1.0)
         solve(effect, pushing)
-        forced[:] = pushing
+        _copy(pushing, forced)
         np.dot(at_end, forced, moved)
         _add(moved, now)
         if has_surplus and k > 0:
@@ -104,7 +104,7 @@ def follow_changes(
                     forced[i, u] += by_rate * moved[rows + i, u]
                     pushing[i, u] += forced[i, u]
         if k == 0:
-            changes[:state] = after
+            _copy(after, changes)
         else:
             np.dot(matrices.by_force, pushing if has_surplus else forced, changes[:state])
             _add(after, changes[:state])
@@ -119,6 +119,13 @@ def follow_changes(
 @compiled
 def _zeros(number: int, unknowns: int) -> Single:
     return np.zeros((number, unknowns), dtype=np.float32)
+
+
+@compiled
+def _copy(changes: Single, to: Single) -> None:
+    for i in range(changes.shape[0]):
+        for u in range(changes.shape[1]):
+            to[i, u] = changes[i, u]
 
 
 @compiled

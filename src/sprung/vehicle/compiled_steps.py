@@ -8,7 +8,7 @@ All arrays are contiguous. Those that go together are one array, as every array 
 
 from __future__ import annotations
 
-from math import exp, fabs, isfinite, log, nan, sqrt
+from math import exp, fabs, isfinite, log, sqrt
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -41,7 +41,7 @@ slope by the travel, and the error and force of the evaluation before; shape (6,
 @compiled
 def follow_motion(
     step: StepMatrices, laws: LawTable, increments: Array, inputs: Array, solved: float, motion: Motion
-) -> None:
+) -> int:
     """Follow a motion from its first state and memories, which stand in it.
 
     Parameters
@@ -58,7 +58,12 @@ def follow_motion(
     solved
         Difference of forces from those that they were evaluated with, as a part of the largest, that is none.
     motion
-        Where it is written; not finite from where it diverges.
+        Where it is written.
+
+    Returns
+    -------
+    int
+        Of how many steps, the start included, the states are finite.
     """
     rows, state = len(step.at_end), len(step.by_state)
     start, end, work = np.zeros((5, rows)), np.zeros((5, rows)), np.zeros((6, rows))
@@ -94,8 +99,8 @@ def follow_motion(
             whole[k, i] = predicted[i]
             total += predicted[i]
         if not isfinite(total):
-            whole[k:], memories[k:], motion.surplus[k:] = nan, nan, nan
-            break
+            return k
+    return len(whole)
 
 
 @compiled

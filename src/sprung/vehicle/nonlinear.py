@@ -55,7 +55,7 @@ class Dependences(NamedTuple):
         """Collect the pairs of elements: their rows, shape (element,), and parameters, shape (parameter, element)."""
         pairs = [np.stack(np.broadcast_arrays(which, positions), -1).reshape(-1, 2) for which, positions in elements]
         which, parameters = np.unique(np.concatenate([np.zeros((0, 2), dtype=np.int64), *pairs]), axis=0).T
-        return cls(which, parameters)
+        return cls(np.ascontiguousarray(which), np.ascontiguousarray(parameters))
 
     def find(self, which: Index, parameters: Index) -> Index:
         """Return the positions of pairs, which and parameters being of shapes that go together."""

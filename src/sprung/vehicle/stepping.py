@@ -304,7 +304,9 @@ class Stepper:
 
         def follow(drop: int) -> None:
             own, step = Motion(*(part[drop] for part in motion)), self._matrices[self.kind[drop]]
-            follow_motion(step, laws, increments[drop], inputs[drop], _SOLVED, own)
+            finite = follow_motion(step, laws, increments[drop], inputs[drop], _SOLVED, own)
+            for part in own:
+                part[finite:] = np.nan
 
         # Each drop may have a processor of its own.
         with ThreadPoolExecutor(os.cpu_count()) as pool:
