@@ -29,7 +29,6 @@ from sprung.vehicle import (
     parse_record,
     stiffened_air_springs,
 )
-from sprung.vehicle.compilation import compiled
 from sprung.vehicle.compiled_changes import solve
 from sprung.vehicle.damper_curve import CurveParts, damper_curve
 from sprung.vehicle.force_laws import (
@@ -325,8 +324,7 @@ def test_forces_memories_and_surplus_are_those_of_the_laws(extras: tuple[str, ..
         curved = mean_rate - (rate[1:] + rate[:-1]) / 2
         by_rate, by_travel = (part[1:] + part[:-1] for part in (found.by_rate, found.by_travel))
         surplus = by_rate * curved - by_travel * np.diff(rate, axis=0) * step / 12
-        arguments = kinks.arguments(inputs)
-        surplus += kinks.surplus(arguments[:-1], arguments[1:])
+        surplus += kinks.surplus(inputs[:-1], inputs[1:])
         np.testing.assert_allclose(motion.surplus[1:, drop], surplus, atol=1e-5 * largest)
         assert not motion.surplus[0].any()
 
@@ -349,21 +347,6 @@ def test_systems_of_equations_are_solved_where_the_diagonal_is_zero() -> None:
     expected = np.linalg.solve(matrix.astype(np.float64), right.astype(np.float64))
     solve(matrix, right)
     np.testing.assert_allclose(right, expected, atol=1e-4 * np.abs(expected).max())
-
-
-def test_loops_are_compiled_where_nothing_can_be_kept(monkeypatch: pytest.MonkeyPatch) -> None:
-    """As in a container that can only be read."""
-    options: list[bool] = []
-
-    def compile_function(function: object, cache: bool = False, **_: object) -> object:
-        options.append(cache)
-        if cache:
-            raise RuntimeError("cannot cache function: no locator available")
-        return function
-
-    monkeypatch.setattr("sprung.vehicle.compilation.njit", compile_function)
-    assert compiled(abs) is abs
-    assert options == [True, False]
 
 
 @pytest.mark.parametrize(

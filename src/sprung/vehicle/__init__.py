@@ -52,8 +52,9 @@ from sprung.vehicle.linearisation import (
 )
 from sprung.vehicle.load import EMPTY, Added, Finite, Item, Load, NotNegative, Positive
 from sprung.vehicle.model import LINEAR_LAWS, LinearModel, Matrices, Rows, highest_derivatives, state_matrix
-from sprung.vehicle.nonlinear import NonlinearForces, NonlinearModel
+from sprung.vehicle.nonlinear import NonlinearModel
 from sprung.vehicle.nonlinear_elements import NonlinearElement, ground_contact_elements, nonlinear_elements
+from sprung.vehicle.nonlinear_forces import NonlinearForces
 from sprung.vehicle.nuisances import (
     LOAD_MASS,
     LOW_PASS_CORNER,

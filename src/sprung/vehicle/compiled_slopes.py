@@ -16,7 +16,7 @@ from sprung.vehicle.compiled_steps import air_ratio
 from sprung.vehicle.kink_means import STILL
 
 if TYPE_CHECKING:
-    from sprung.vehicle.nonlinear import LawTable, TableSlopes
+    from sprung.vehicle.law_table import LawTable, TableSlopes
     from sprung.vehicle.sensitivities import ForceSlopes
 
 Array = NDArray[np.float64]

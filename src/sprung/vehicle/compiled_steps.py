@@ -19,7 +19,7 @@ from sprung.vehicle.force_laws import LEAST_COLUMN, POLYTROPIC_EXPONENT, SMALL_S
 from sprung.vehicle.kink_means import STILL
 
 if TYPE_CHECKING:
-    from sprung.vehicle.nonlinear import LawTable
+    from sprung.vehicle.law_table import LawTable
     from sprung.vehicle.stepping import Motion, StepMatrices
 
 Array = NDArray[np.float64]

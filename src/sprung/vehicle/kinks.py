@@ -119,85 +119,15 @@ class KinkForces:
         return cls(np.concatenate(on), number, Kinks(*np.concatenate(parts, 1)))
 
     @cached_property
-    def _aloft(self) -> Index:
-        """Which kinks act in the air alone."""
-        return np.flatnonzero(self.kinks.in_the_air)
-
-    @cached_property
-    def _of_inputs(self) -> Array:
-        """Arguments of the kinks by travels and rates of all rows, shape (2 row, kink + kink in the air)."""
-        kink = np.arange(len(self.row_of))
-        found = np.zeros((2 * self.number, len(kink) + len(self._aloft)))
-        found[self.row_of, kink] = self.kinks.by_travel
-        found[self.number + self.row_of, kink] = self.kinks.by_rate
-        found[self.row_of[self._aloft], len(kink) + np.arange(len(self._aloft))] = 1.0
-        return found
-
-    @cached_property
-    def _positions(self) -> Array:
-        """Positions of the kinks, and the travel above which those in the air act."""
-        return np.concatenate([self.kinks.position, np.zeros(len(self._aloft))])
-
-    @cached_property
-    def _by_hinge(self) -> Array:
-        """Force of each row by how far arguments are above their positions, shape (kink, row)."""
+    def _by_jump(self) -> Array:
+        """Force of each row by kinks of jump one, shape (kink, row)."""
         return np.where(self.row_of[:, None] == np.arange(self.number), self.kinks.jump[:, None], 0.0)
 
-    @cached_property
-    def _by_slope(self) -> Array:
-        """Slopes of each row's force by its travel and its rate, by which arguments are above, shape (kink, 2 row)."""
-        by_input = self.kinks.by_travel[:, None], self.kinks.by_rate[:, None]
-        return np.hstack([factor * self._by_hinge for factor in by_input])
-
-    @cached_property
-    def _is_rounded(self) -> NDArray[np.bool_]:
-        is_rounded: NDArray[np.bool_] = self.kinks.width > 0
-        return is_rounded
-
-    @cached_property
-    def _rounded(self) -> tuple[Index, Array, Array, Array]:
-        """Of the kinks that are rounded: positions, widths, arguments from which they act, and what is subtracted."""
-        at = np.flatnonzero(self._is_rounded)
-        position, width = self.kinks.position[at], self.kinks.width[at]
-        return at, width, -position, np.hypot(position, width) - position
-
-    def arguments(self, inputs: Array) -> Array:
-        """Return how far each kink's argument is above its position, and of kinks in the air alone the travel.
-
-        Parameters
-        ----------
-        inputs
-            Travels and rates of all rows, shape (..., 2 row).
-
-        Returns
-        -------
-        ndarray
-            Shape (..., kink + kink in the air).
-        """
-        above: Array = inputs @ self._of_inputs - self._positions
-        return above
-
-    def act(self, arguments: Array) -> tuple[Array, Array]:
-        """Return forces, and their slopes by travels and rates, shapes (..., row) and (..., 2 row), from `arguments`."""
-        values, slopes = self._hinges(arguments)
-        return values @ self._by_hinge, slopes @ self._by_slope
-
-    def _hinges(self, arguments: Array) -> tuple[Array, Array]:
-        """Return forces of kinks of jump one, and their slopes, shape (..., kink), from `arguments`."""
-        above = arguments[..., : len(self.row_of)]
-        values, slopes = np.maximum(above, 0.0), (above > 0).astype(np.float64)
-        at, width, least, at_zero = self._rounded
-        if at.size:
-            # As `hinge`, of which a step needs no more than this.
-            u = above[..., at]
-            root = np.hypot(u, width)
-            values[..., at] = np.maximum(0.5 * (u + root - at_zero), 0.0)
-            slopes[..., at] = 0.5 * (1.0 + u / root) * (u > least)
-        if self._aloft.size:
-            is_aloft = arguments[..., len(self.row_of) :] > 0
-            values[..., self._aloft] *= is_aloft
-            slopes[..., self._aloft] *= is_aloft
-        return values, slopes
+    def _arguments(self, inputs: Array) -> tuple[Array, Array]:
+        """Return how far each kink's argument is above its position, and the travel of its row, shape (..., kink)."""
+        travel, rate = inputs[..., self.row_of], inputs[..., self.number + self.row_of]
+        above: Array = self.kinks.by_travel * travel + self.kinks.by_rate * rate - self.kinks.position
+        return above, travel
 
     def surplus(self, before: Array, after: Array) -> Array:
         """Return the additions to the force at the end of a step, N, shape (..., row).
@@ -205,32 +135,39 @@ class KinkForces:
         Parameters
         ----------
         before, after
-            Arguments at the start and at the end, from `arguments`.
+            Travels and rates of all rows at the start and at the end, m and m/s, shape (..., 2 row).
         """
-        found: Array = self._excess(before, after) @ self._by_hinge
+        found: Array = self._excess(before, after) @ self._by_jump
         return found
 
     def unresolved(self, before: Array, after: Array) -> Array:
-        """Return what mean forces over steps are above what their ends say, N, shape (..., row), from `arguments` at both.
+        """Return what mean forces over steps are above what their ends say, N, shape (..., row), from the same.
 
         The ends say it by the trapezoidal rule and its correction by the slopes there (Euler and Maclaurin): to a filter,
         which takes samples for those of a smooth signal, they say everything but where kinks lie.
         """
-        moved = (after - before)[..., : len(self.row_of)]
-        turned = self._hinges(after)[1] - self._hinges(before)[1]
-        found: Array = 0.5 * self.surplus(before, after) + (moved * turned / 12.0) @ self._by_hinge
+        moved = self._arguments(after)[0] - self._arguments(before)[0]
+        turned = self._slopes(after) - self._slopes(before)
+        found: Array = 0.5 * self.surplus(before, after) + (moved * turned / 12.0) @ self._by_jump
         return found
+
+    def _slopes(self, inputs: Array) -> Array:
+        """Return the slopes of kinks of jump one, shape (..., kink)."""
+        above, travel = self._arguments(inputs)
+        acts = (self.kinks.in_the_air == 0) | (travel > 0)
+        slopes: Array = hinge(above, self.kinks.position, self.kinks.width)[1] * acts
+        return slopes
 
     def _excess(self, before: Array, after: Array) -> Array:
         """Return twice the mean forces of kinks of jump one less the sum of both ends, shape (..., kink)."""
-        number, at = len(self.row_of), self._is_rounded
-        u, v = before[..., :number], after[..., :number]
-        excess = sharp_excess(u, v)
-        if at.any():
+        (u, x), (v, y) = self._arguments(before), self._arguments(after)
+        excess, is_rounded, is_aloft = sharp_excess(u, v), self.kinks.width > 0, self.kinks.in_the_air > 0
+        if is_rounded.any():
+            at = np.flatnonzero(is_rounded)
             excess[..., at] = rounded_excess(u[..., at], v[..., at], self.kinks.width[at])
-        if self._aloft.size:
-            travels = before[..., number:], after[..., number:]
-            excess[..., self._aloft] = excess_in_the_air(u[..., self._aloft], v[..., self._aloft], *travels)
+        if is_aloft.any():
+            at = np.flatnonzero(is_aloft)
+            excess[..., at] = excess_in_the_air(u[..., at], v[..., at], x[..., at], y[..., at])
         return excess
 
 

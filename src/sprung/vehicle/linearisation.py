@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.vehicle.force_laws import ElementInput, ForceLaw
-from sprung.vehicle.nonlinear import NonlinearForces
+from sprung.vehicle.nonlinear_forces import NonlinearForces
 
 Real = NDArray[np.float64]
 Complex = NDArray[np.complex128]

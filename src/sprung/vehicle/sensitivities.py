@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.vehicle.nonlinear import Dependences
+from sprung.vehicle.nonlinear_forces import Dependences
 from sprung.vehicle.stepping import Stepper, Trajectory
 
 Array = NDArray[np.float64]

@@ -16,7 +16,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.vehicle.nonlinear import Dependences, ForcesAt, LawTable, NonlinearForces, NonlinearModel, TableSlopes
+from sprung.vehicle.law_table import LawTable, TableSlopes
+from sprung.vehicle.nonlinear import NonlinearModel
+from sprung.vehicle.nonlinear_forces import Dependences, ForcesAt, NonlinearForces
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -229,12 +231,6 @@ class Stepper:
         found: Array = self.by_state @ self.by_force + self.directly_by_force
         return found
 
-    @cached_property
-    def input_by_surplus(self) -> Array:
-        """Travels and rates at the end of a step by the surplus there, shape (kind, 2 row, row)."""
-        found: Array = self.by_state @ self.by_force
-        return found
-
     def unresolved(self, trajectory: Trajectory) -> Array:
         """Return what the mean forces of kinks over steps are above what the ends of the steps say; see `KinkForces`.
 
@@ -250,10 +246,10 @@ class Stepper:
         """
         states, forces = trajectory.states, trajectory.forces
         motion = np.concatenate([states, forces, np.ones((*states.shape[:-1], 1))], axis=-1)
-        kinks, of_drop = self.forces_at.kinks, np.swapaxes(self.inputs, 1, 2)[self.kind]
-        arguments = kinks.arguments(np.swapaxes(np.swapaxes(motion, 0, 1) @ of_drop, 0, 1))
+        of_drop = np.swapaxes(self.inputs, 1, 2)[self.kind]
+        inputs = np.swapaxes(np.swapaxes(motion, 0, 1) @ of_drop, 0, 1)
         found = np.zeros_like(forces)
-        found[1:] = kinks.unresolved(arguments[:-1], arguments[1:])
+        found[1:] = self.forces_at.kinks.unresolved(inputs[:-1], inputs[1:])
         return found
 
     @cached_property
