@@ -158,6 +158,22 @@ def test_what_was_refused_beside_a_term_that_is_gone_is_tried_again() -> None:
 
 
 @pytest.mark.slow
+def test_a_term_that_explains_much_stays_though_its_parameters_are_hardly_known() -> None:
+    """Six drops do not determine relaxation times of 0.2 s; without the Zener branch rates were 17 % off, 20 standard errors."""
+    outcome = identified(514)
+    assert outcome.model == ("zener",)
+    assert outcome.worst_scaled[0] < 3
+
+
+@pytest.mark.slow
+def test_of_two_terms_that_move_alike_the_likelier_is_taken_though_the_other_leaves_noise() -> None:
+    """A damper mount in the place of a Zener branch gained 470 instead of 786: dampers were 7 % off, 16 standard errors."""
+    outcome = identified(523)
+    assert outcome.model == ("zener", "bending")
+    assert outcome.worst_scaled[0] < 3
+
+
+@pytest.mark.slow
 def test_no_fault_is_evident_that_leaves_the_beginnings() -> None:
     """Of a car with a knee one late wheel sensor and one behind a low-pass explained all but the first 0.3 s: rejected."""
     ((campaign, _),) = record([draw_other_test(407)])

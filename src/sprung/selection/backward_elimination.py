@@ -68,7 +68,7 @@ def leave_out_undetermined(search: ModelSearch, statistics: FitStatistics) -> Mo
     Returns
     -------
     ModelSearch
-        As given where the records determine every term.
+        As given where the records determine every term, or miss those that they do not.
     """
     structure = search.structure
     # Where nothing was weighed the scale is unknown, which speaks against no term.
@@ -86,12 +86,14 @@ def leave_out_undetermined(search: ModelSearch, statistics: FitStatistics) -> Mo
         for term in search.selected
     }
     gains = {term: search.wald_gain(term) for term, names in missing.items() if names}
-    if not gains:
-        return search
-    least = min(gains, key=lambda term: gains[term])
-    against = f"the recordings do not determine {', '.join(missing[least])}"
-    search = search.recorded({least: gains[least]}, True, False, against)
-    return search.refit(search.without(least))
+    for term in sorted(gains, key=gains.__getitem__):
+        smaller = search.refit(search.without(term))
+        lost = 2 * (search.fit.loglikelihood - smaller.fit.loglikelihood) / smaller.fit.disagreement
+        # What explains that much is there, however little is known of what it is.
+        if lost <= search.required(term):
+            against = f"the recordings do not determine {', '.join(missing[term])}"
+            return smaller.recorded({term: gains[term]}, True, False, against)
+    return search
 
 
 def leave_out_unneeded(

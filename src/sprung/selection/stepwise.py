@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import replace
+from math import inf
 
 from sprung.estimation import FitResult, beginning_of
 from sprung.preprocess import FreeDecay
@@ -323,7 +324,8 @@ def accept_likeliest(
     """Fit linear terms one after the other until one is accepted, and those instead of it that may explain more.
 
     Where much is left to explain, a term gains by what another one would explain wholly: scores that differ little do not
-    tell which. So where the first one that is accepted leaves a misfit, the next ones are fitted as well.
+    tell which. So where the first one that is accepted leaves a misfit, the next ones are fitted as well. One that moves alike
+    is fitted in any case: noise may hide that the first one does not explain everything.
 
     Parameters
     ----------
@@ -348,9 +350,8 @@ def accept_likeliest(
         if tried.structure.names == search.structure.names:
             search = tried
             continue
-        if not tried.is_overdispersed:
-            return tried, True
-        rivals = [other for other in terms[number + 1 :] if scores[other][0] > _RIVAL_SCORE * scores[term][0]]
+        least = _RIVAL_SCORE * scores[term][0] if tried.is_overdispersed else inf
+        rivals = [other for other in terms[number + 1 :] if scores[other][0] > least or _move_alike(term, other)]
         best = term
         for other in rivals[:_RIVALS]:
             rival, before = try_term(search, other, among), search
@@ -363,6 +364,11 @@ def accept_likeliest(
             tried = replace(tried, steps=(*search.steps, *tried.steps[len(before.steps) :]))
         return tried, True
     return search, False
+
+
+def _move_alike(term: str, other: str) -> bool:
+    """Whether one of two terms may be taken for the other."""
+    return TERMS[term].counterpart == other or TERMS[other].counterpart == term
 
 
 def try_likeliest(search: ModelSearch, terms: Sequence[str], least: float = 0.0) -> ModelSearch:
