@@ -36,6 +36,7 @@ def _digest() -> str:
     """Return a digest of everything that is compiled, in twelve characters."""
     folder = Path(__file__).parent
     found = blake2b(digest_size=6)
-    for name in (*SOURCES, *RECORDS):
-        found.update((folder / f"{name}.py").read_bytes())
+    for path in (folder / f"{name}.py" for name in (*SOURCES, *RECORDS)):
+        if path.exists():  # not where a program was packed without its sources
+            found.update(path.read_bytes())
     return found.hexdigest()
