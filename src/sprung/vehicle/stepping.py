@@ -1,7 +1,7 @@
-"""Time stepping: many motions of a vehicle with nonlinear elements at once.
+"""Time stepping: motions of a vehicle with nonlinear elements.
 
 The linear vehicle is stepped exactly, the forces of the nonlinear elements being its inputs, and these depend on few
-displacements. So a step of all motions is one product of matrices, and an evaluation of the force laws at its end.
+displacements. So a step is a product of matrices, and an evaluation of the force laws at its end (`compiled_steps`).
 """
 
 from __future__ import annotations
