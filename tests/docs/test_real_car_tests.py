@@ -159,7 +159,7 @@ def test_what_was_refused_beside_a_term_that_is_gone_is_tried_again() -> None:
 
 @pytest.mark.slow
 def test_a_term_that_explains_much_stays_though_its_parameters_are_hardly_known() -> None:
-    """Six drops do not determine relaxation times of 0.2 s; without the Zener branch rates were 17 % off, 20 standard errors."""
+    """Six drops do not determine relaxation times of 0.2 s; without the branch rates were 17 % off, 20 standard errors."""
     outcome = identified(514)
     assert outcome.model == ("zener",)
     assert outcome.worst_scaled[0] < 3
