@@ -5,15 +5,14 @@ Every coefficient of the laws follows a few parameters, and so does a force by t
 
 from __future__ import annotations
 
-from math import exp, fabs, log, sqrt
+from math import exp, fabs
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from sprung.vehicle.compilation import compiled
-from sprung.vehicle.compiled_steps import air_ratio
-from sprung.vehicle.kink_means import STILL
+from sprung.vehicle.compiled_steps import air_ratio, excess_in_the_air, hinge, rounded_excess
 
 if TYPE_CHECKING:
     from sprung.vehicle.law_table import LawTable, TableSlopes
@@ -89,13 +88,9 @@ def _differentiate_laws(
     for kink in range(laws.kinks.shape[1]):
         row, position, width = int(laws.kinks[0, kink]), laws.kinks[3, kink], laws.kinks[5, kink]
         u = laws.kinks[1, kink] * at[row] + laws.kinks[2, kink] * at[rows + row] - position
-        value, slope, by_position, by_width, least = u, 1.0, 0.0, 0.0, 0.0
-        if width > 0:
-            root, at_zero = sqrt(u * u + width * width), sqrt(position * position + width * width)
-            value, slope, least = 0.5 * (u + root - at_zero + position), 0.5 * (1.0 + u / root), -position
-            by_position, by_width = 0.5 * (1.0 - position / at_zero), 0.5 * width * (1.0 / root - 1.0 / at_zero)
-        acts = u > least and (laws.kinks[6, kink] == 0 or at[row] > 0) and not is_left_out[row]
-        weight = factor if acts else 0.0
+        value, slope, by_position, by_width = hinge(u, position, width)
+        may_act = (laws.kinks[6, kink] == 0 or at[row] > 0) and not is_left_out[row]
+        weight = factor if may_act else 0.0
         push = weight * laws.kinks[4, kink]
         by_kink[0, kink], by_kink[1, kink] = weight * value, push * slope
         by_kink[2, kink], by_kink[3, kink] = push * by_position, push * by_width
@@ -214,9 +209,9 @@ def differentiate_excess(
         v = by_travel * y + by_rate * end[rows + row] - position
         is_aloft, by_width, by_x, by_y = laws.kinks[6, kink] != 0, 0.0, 0.0, 0.0
         if is_aloft and (u * v < 0 or x * y < 0):
-            excess, by_u, by_v, by_x, by_y = _excess_in_the_air(u, v, x, y)
+            excess, by_u, by_v, by_x, by_y = excess_in_the_air(u, v, x, y)
         elif width > 0:
-            excess, by_u, by_v, by_width = _rounded_excess(u, v, width)
+            excess, by_u, by_v, by_width = rounded_excess(u, v, width)
         elif not is_aloft and u * v < 0:
             size = fabs(v - u)
             excess, by_u, by_v = u * v / size, v * v / (size * (v - u)), -u * u / (size * (v - u))
@@ -239,45 +234,3 @@ def differentiate_excess(
             )
             found = jump * (by_u * before + by_v * after + by_width * table.kinks.slopes[4, one])
             by_parameter[table.kinks.to[one]] += found + excess * table.kinks.slopes[3, one]
-
-
-@compiled
-def _rounded_excess(u: float, v: float, width: float) -> tuple[float, float, float, float]:
-    """Return the same as in `compiled_steps`, and its derivatives by both ends and by the width."""
-    first, last, change = sqrt(u * u + width * width), sqrt(v * v + width * width), v - u
-    if not fabs(change) > STILL * min(first, last):
-        return 0.0, 0.0, 0.0, 0.0
-    turned = log((v + last) / (u + first)) if u + v > 0 else log((first - u) / (last - v))
-    mean = 0.25 * (v * (v + last) - u * (u + first) + width * width * turned) / change
-    at_start, at_end = 0.5 * (u + first), 0.5 * (v + last)
-    return (
-        2.0 * mean - at_start - at_end,
-        2.0 * (mean - at_start) / change - 0.5 * (1.0 + u / first),
-        2.0 * (at_end - mean) / change - 0.5 * (1.0 + v / last),
-        width * turned / change - 0.5 * width * (1.0 / first + 1.0 / last),
-    )
-
-
-@compiled
-def _excess_in_the_air(u: float, v: float, x: float, y: float) -> tuple[float, float, float, float, float]:
-    """Return the same as in `compiled_steps`, and its derivatives by all arguments."""
-    first, last, passes = 0.0, 1.0, 0.0
-    for one, other in ((u, v), (x, y)):
-        if one <= 0 and other <= 0:
-            last = 0.0
-        elif one <= 0:
-            passes = one / (one - other)
-            first = max(first, passes)
-        elif other <= 0:
-            passes = one / (one - other)
-            last = min(last, passes)
-    duration, acts_first, acts_last = max(last - first, 0.0), u > 0 and x > 0, v > 0 and y > 0
-    by_end = duration * 0.5 * (first + last)
-    excess = 2.0 * (u * duration + (v - u) * by_end) - (u if acts_first else 0.0) - (v if acts_last else 0.0)
-    by_x, by_y = 0.0, 0.0
-    if (x > 0) != (y > 0):
-        # The travel says how long the force acts, if the argument is above zero where it passes zero.
-        lost = 2.0 * max(u + (v - u) * passes, 0.0) / (x - y) ** 2
-        by_x, by_y = lost * fabs(y), lost * fabs(x)
-    by_u = 2.0 * (duration - by_end) - (1.0 if acts_first else 0.0)
-    return excess, by_u, 2.0 * by_end - (1.0 if acts_last else 0.0), by_x, by_y

@@ -222,18 +222,10 @@ def _evaluate(laws: LawTable, moves: bool, start: Array, end: Array, memories: A
         if laws.kinks[6, kink] != 0 and not end[_TRAVEL, row] > 0:
             continue
         u = by_travel * end[_TRAVEL, row] + by_rate * end[_RATE, row] - position
-        value, slope, least = u, 1.0, 0.0
-        if width > 0:
-            root = sqrt(u * u + width * width)
-            value, slope = (
-                0.5 * (u + root - sqrt(position * position + width * width) + position),
-                0.5 * (1.0 + u / root),
-            )
-            least = -position
-        if u > least:
-            work[_FOUND, row] += jump * value
-            end[_BY_TRAVEL, row] += jump * slope * by_travel
-            end[_BY_RATE, row] += jump * slope * by_rate
+        value, slope, _, _ = hinge(u, position, width)
+        work[_FOUND, row] += jump * value
+        end[_BY_TRAVEL, row] += jump * slope * by_travel
+        end[_BY_RATE, row] += jump * slope * by_rate
     for curve in range(laws.curves.shape[1]):
         row, growth, highest = int(laws.curves[0, curve]), laws.curves[1, curve], laws.curves[2, curve]
         rate, inverse_height = laws.curves[3, curve], laws.curves[4, curve]
@@ -289,35 +281,67 @@ def _find_surplus(laws: LawTable, length: float, start: Array, end: Array, work:
         u = by_travel * start[_TRAVEL, row] + by_rate * start[_RATE, row] - position
         v = by_travel * end[_TRAVEL, row] + by_rate * end[_RATE, row] - position
         if laws.kinks[6, kink] != 0:
-            work[_MISSING, row] += jump * _excess_in_the_air(u, v, start[_TRAVEL, row], end[_TRAVEL, row])
+            work[_MISSING, row] += jump * excess_in_the_air(u, v, start[_TRAVEL, row], end[_TRAVEL, row])[0]
         elif width > 0:
-            work[_MISSING, row] += jump * _rounded_excess(u, v, width)
+            work[_MISSING, row] += jump * rounded_excess(u, v, width)[0]
         elif u * v < 0:
             work[_MISSING, row] += jump * u * v / fabs(v - u)
 
 
 @compiled
-def _rounded_excess(u: float, v: float, width: float) -> float:
-    """Return the first of `rounded_excess`, of one step."""
-    first, last = sqrt(u * u + width * width), sqrt(v * v + width * width)
-    if not fabs(v - u) > STILL * min(first, last):
-        return 0.0
-    # The difference of two inverse hyperbolic sines, without sums of nearly opposite numbers.
-    turned = log((v + last) / (u + first)) if u + v > 0 else log((first - u) / (last - v))
-    grown = v * (v + last) - u * (u + first) + width * width * turned
-    return 0.5 * grown / (v - u) - 0.5 * (u + first + v + last)
+def hinge(u: float, position: float, width: float) -> tuple[float, float, float, float]:
+    """Return what `kinks.hinge` does, of one kink."""
+    if not u > (-position if width > 0 else 0.0):
+        return 0.0, 0.0, 0.0, 0.0
+    if not width > 0:
+        return u, 1.0, 0.0, 0.0
+    root, at_zero = sqrt(u * u + width * width), sqrt(position * position + width * width)
+    return (
+        0.5 * (u + root - at_zero + position),
+        0.5 * (1.0 + u / root),
+        0.5 * (1.0 - position / at_zero),
+        0.5 * width * (1.0 / root - 1.0 / at_zero),
+    )
 
 
 @compiled
-def _excess_in_the_air(u: float, v: float, x: float, y: float) -> float:
-    """Return the first of `excess_in_the_air`, of one step."""
-    first, last = 0.0, 1.0
+def rounded_excess(u: float, v: float, width: float) -> tuple[float, float, float, float]:
+    """Return what `kink_means.rounded_excess` does, of one step, and its derivatives by both ends and by the width."""
+    first, last, change = sqrt(u * u + width * width), sqrt(v * v + width * width), v - u
+    if not fabs(change) > STILL * min(first, last):
+        return 0.0, 0.0, 0.0, 0.0
+    # The difference of two inverse hyperbolic sines, without sums of nearly opposite numbers.
+    turned = log((v + last) / (u + first)) if u + v > 0 else log((first - u) / (last - v))
+    mean = 0.25 * (v * (v + last) - u * (u + first) + width * width * turned) / change
+    at_start, at_end = 0.5 * (u + first), 0.5 * (v + last)
+    return (
+        2.0 * mean - at_start - at_end,
+        2.0 * (mean - at_start) / change - 0.5 * (1.0 + u / first),
+        2.0 * (at_end - mean) / change - 0.5 * (1.0 + v / last),
+        width * turned / change - 0.5 * width * (1.0 / first + 1.0 / last),
+    )
+
+
+@compiled
+def excess_in_the_air(u: float, v: float, x: float, y: float) -> tuple[float, float, float, float, float]:
+    """Return what `kink_means.excess_in_the_air` does, of one step, and its derivatives by all arguments."""
+    first, last, passes = 0.0, 1.0, 0.0
     for one, other in ((u, v), (x, y)):
         if one <= 0 and other <= 0:
             last = 0.0
         elif one <= 0:
-            first = max(first, one / (one - other))
+            passes = one / (one - other)
+            first = max(first, passes)
         elif other <= 0:
-            last = min(last, one / (one - other))
-    found = 2.0 * max(last - first, 0.0) * (u + (v - u) * 0.5 * (first + last))
-    return found - (u if u > 0 and x > 0 else 0.0) - (v if v > 0 and y > 0 else 0.0)
+            passes = one / (one - other)
+            last = min(last, passes)
+    duration, acts_first, acts_last = max(last - first, 0.0), u > 0 and x > 0, v > 0 and y > 0
+    by_end = duration * 0.5 * (first + last)
+    excess = 2.0 * (u * duration + (v - u) * by_end) - (u if acts_first else 0.0) - (v if acts_last else 0.0)
+    by_x, by_y = 0.0, 0.0
+    if (x > 0) != (y > 0):
+        # The travel says how long the force acts, if the argument is above zero where it passes zero.
+        lost = 2.0 * max(u + (v - u) * passes, 0.0) / (x - y) ** 2
+        by_x, by_y = lost * fabs(y), lost * fabs(x)
+    by_u = 2.0 * (duration - by_end) - (1.0 if acts_first else 0.0)
+    return excess, by_u, 2.0 * by_end - (1.0 if acts_last else 0.0), by_x, by_y

@@ -178,8 +178,9 @@ def _bent_derivatives(
 def _friction_length(parameters: Array) -> tuple[Array, Array]:
     """Return the travel over which friction builds up, F/s, m, and whether it is above its lower limit."""
     force, stiffness = parameters
-    length = np.abs(force) / stiffness
-    return np.maximum(length, _SHORTEST), length > _SHORTEST
+    length = np.sign(force.real) * force / stiffness  # the modulus of real numbers alone, which may have a complex step
+    above = length.real > _SHORTEST
+    return np.where(above, length, _SHORTEST), above
 
 
 def _friction(parameters: Array, given: ElementInput) -> ElementForce:
@@ -204,9 +205,7 @@ def _friction_derivatives(parameters: Array, given: ElementInput) -> tuple[Array
 
 
 def _as_friction(parameters: Array) -> Friction:
-    force, stiffness = parameters
-    length = np.sign(force.real) * force / stiffness
-    return Friction(force, np.where(length.real > _SHORTEST, length, _SHORTEST))
+    return Friction(parameters[0], _friction_length(parameters)[0])
 
 
 def _load_friction(parameters: Array, given: ElementInput) -> ElementForce:
@@ -222,7 +221,7 @@ def _load_friction_derivatives(parameters: Array, given: ElementInput) -> tuple[
 
 
 def _as_load_friction(parameters: Array) -> Friction:
-    return Friction(parameters[0], _as_friction(parameters[1:]).length)
+    return Friction(parameters[0], _friction_length(parameters[1:])[0])
 
 
 def _uneven_friction(side: float, parameters: Array, given: ElementInput) -> ElementForce:
@@ -238,7 +237,7 @@ def _uneven_friction_derivatives(side: float, parameters: Array, given: ElementI
 
 
 def _as_uneven_friction(side: float, parameters: Array) -> Friction:
-    return Friction(parameters[1] + side * parameters[0], _as_friction(parameters[1:]).length)
+    return Friction(parameters[1] + side * parameters[0], _friction_length(parameters[1:])[0])
 
 
 def _rebound_kinks(parameters: Array) -> Kinks:

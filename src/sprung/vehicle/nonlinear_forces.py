@@ -17,6 +17,8 @@ from sprung.vehicle.nonlinear_elements import NonlinearElement
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
+_NO_MEMORY = np.zeros(1)
+
 
 class Dependences(NamedTuple):
     """Which of some forces or memories follow which parameters: each pair once.
@@ -227,6 +229,3 @@ def _adjacent(positions: Sequence[int]) -> slice | Index:
     """Return positions as a slice where they are adjacent: a view costs less than a copy."""
     first, last = positions[0], positions[-1] + 1
     return slice(first, last) if list(positions) == list(range(first, last)) else np.array(positions)
-
-
-_NO_MEMORY = np.zeros(1)
