@@ -308,6 +308,38 @@ def test_steps_end_at_an_optimum_where_the_last_one_gained_next_to_nothing(gain:
     assert (held.steps, held.converged) == (5, False)
 
 
+@pytest.mark.parametrize(("gain", "steps", "converged"), [(0.08, 9, True), (0.12, 30, False)])
+def test_steps_that_are_never_expected_to_gain_less_end(gain: float, steps: int, converged: bool) -> None:
+    """Where friction turns round the likelihood has a kink at every step: a third of a standard error is as near as it gets."""
+    found = maximise(Scripted([gain] * 40, [0.5 * gain] * 40), 0, tolerance=0.004, damping=0.0, most_steps=30)
+    assert (found.steps, found.converged) == (steps, converged)
+
+
+class Bent(NamedTuple):
+    """Twice the log-likelihood -(x - 3)² - 100 (y - x²)², where y is eliminated, and follows x along a straight line.
+
+    Points are x, y, and how often y has stepped alone.
+    """
+
+    def normal_equations(self, point: Real, _damping: float) -> NormalEquations:
+        x, y, _ = point
+        return NormalEquations(np.eye(1), np.array([3 - x]), np.eye(1), np.eye(1), float(100 * (x**2 - y) ** 2))
+
+    def trial(self, point: Real, step: Real, _damping: float) -> tuple[Real, float]:
+        x, _, alone = point
+        tried = np.array([x + step[0], x**2 + 2 * x * step[0], alone + (step[0] == 0)])
+        value, other = ((x - 3) ** 2 + 100 * (y - x**2) ** 2 for x, y, _ in (point, tried))
+        return tried, float(value - other)
+
+
+def test_eliminated_unknowns_step_alone_where_they_did_not_follow() -> None:
+    """One step leads x there; y, which followed along a straight line, loses a hundred times the fourth power of it."""
+    found = maximise(Bent(), np.array([2.0, 4.0, 0.0]), tolerance=1e-9, damping=1e-12, most_steps=10)
+    assert found.converged
+    assert found.steps == 1
+    np.testing.assert_allclose(found.point, [3.0, 9.0, 1.0], atol=1e-6)
+
+
 def test_a_step_that_was_held_back_does_not_say_that_little_is_left() -> None:
     """The first step gains a hundred times what the next one does, of which fifty are to come."""
     found = maximise(Distant(), np.array([1.0, 0.0]), tolerance=450.0, damping=1e-9, most_steps=100, longest_step=1.0)

@@ -83,7 +83,7 @@ class TimeSteppingAt:
         """
         information, gradient = self._normal_equations
         parameters = len(self.values)
-        change = values - self.values
+        change = self.objective.change_between(self.values, values)
         following = self._solved(min(damping, _FOLLOWING), -information[:, parameters:, :parameters] @ change[:, None])
         step = self._solved(damping, gradient[:, parameters:, None])
         whole = self._moved_by(values, following + step)

@@ -168,6 +168,17 @@ class TimeSteppingObjective:
         read = self.sensors.rows.affine[:, :, 1:][:, :, grows]
         return bool(read.any()) or any(model.linear.has_scale for model in self.models_by_kind)
 
+    def change_between(self, values: Real, others: Real) -> Real:
+        """Return the change from parameter values to others that initial states follow, SI, shape (parameter,) each.
+
+        The delay of a low-pass is reciprocal to its corner, and moves the motion in time: of the corner it is the change that
+        would delay as much if the delay were linear.
+        """
+        change = others - values
+        if (corner := self.sensors.corner_position) is not None:
+            change[corner] *= values[corner] / others[corner]
+        return change
+
     def visible_changes(self, values: Real) -> Real:
         """Return what of a change of the parameters records show, as a projection, SI, shape (parameter, parameter).
 

@@ -48,9 +48,15 @@ expected that no step brings."""
 _CRAWL, _NEAR = 0.05, 1.0
 """Part of the expected gain that is hardly anything where no more than so much is expected: one standard error."""
 
+_SMALL, _STAGNANT, _LONG = 0.1, 0.5, 8
+"""Expected gain of a third of a standard error, and the part of the one before that is expected again: steps to a smooth
+maximum leave less each time. After so many others in turn none is expected to."""
+
 _OF_SECOND_ORDER = 250.0
 """How many times the tolerance eliminated unknowns may still gain, up to one standard error: where they are going is part of
 the gradient of the others, and what they leave is of second order. Some of them go on for long that records hardly show."""
+
+_MOSTLY = 0.5  # part of a gain from which it is mostly that of eliminated unknowns
 
 _FIRM = 1.0  # damping above which a small gain says nothing of what is left to gain
 
@@ -196,7 +202,8 @@ def maximise(
     -------
     Maximum
     """
-    point, before, idle, of_eliminated = start, np.inf, 0, _OF_ELIMINATED
+    point, before, of_eliminated = start, np.inf, _OF_ELIMINATED
+    idle = stagnant = 0
     for steps in range(most_steps):
         equations = problem.normal_equations(point, of_eliminated)
         if stop is not None and stop(point, equations):
@@ -215,11 +222,12 @@ def maximise(
             of_eliminated = min(_RAISED * of_eliminated, _MOST_OF_ELIMINATED)
         crawls = gain < _NEAR and realised < _CRAWL * gain
         idle = idle + 1 if realised < tolerance or crawls else 0
+        stagnant = stagnant + 1 if _STAGNANT * before < gain < _SMALL else 0
         # What the steps to come will gain, if they go on shrinking as the last two did.
         ratio = min(gain / before, _SLOWEST) if before < np.inf else _SLOWEST
         before = gain
         shrinks = gain * min(ratio / (1 - ratio), 1.0) < tolerance and damping < _FIRM
-        if idle == _IDLE or (shrinks and not equations.is_held_back(longest_step)):
+        if idle == _IDLE or stagnant == _LONG or (shrinks and not equations.is_held_back(longest_step)):
             return Maximum(point, steps + 1, converged=True)
     # Along what hardly shows steps may zigzag for long, each of which gains next to nothing.
     is_near = most_steps > 0 and equations.step()[1] < _STALLED and not equations.is_held_back(longest_step)
@@ -255,6 +263,10 @@ def _gaining_step(
         if not first and expected < tolerance:
             return None
         tried, gain = problem.trial(point, step, of_eliminated)
+        if first and np.isfinite(gain) and gain < _POOR * expected:
+            second, further = _second_step(problem, tried, damping, of_eliminated, longest)
+            if gain + further > max(gain, 0.0):
+                tried, gain = second, gain + further
         if gain >= 0:
             # More than a million times what was expected is as good as any.
             ratio = gain / max(expected, 1e-6 * gain, np.finfo(float).tiny)
@@ -267,14 +279,22 @@ def _gaining_step(
                 ends.append(problem.trial(point, longer, of_eliminated))
             tried, gain = max(ends, key=lambda end: end[1])
             return tried, following, by, gain
-        if first and np.isfinite(gain):
-            back, _ = problem.normal_equations(tried, of_eliminated).step(damping, longest)
-            second_point, further = problem.trial(tried, back, of_eliminated)
-            if gain + further > 0:
-                return second_point, damping, max(expected, gain + further), gain + further
-            first = False
+        first = False
         damping, raised = max(damping, 1e-8) * raised, raised * (_FASTER if cautious else 1.0)
     return None
+
+
+def _second_step(
+    problem: Maximisable[Point], tried: Point, damping: float, of_eliminated: float, longest: float
+) -> tuple[Point, float]:
+    """Return where one more step leads from where a first one has gained too little, and what it gains.
+
+    Eliminated unknowns have followed the first step along a straight line: where most is left to gain by them, they step alone.
+    """
+    there = problem.normal_equations(tried, of_eliminated)
+    step, expected = there.step(damping, longest)
+    alone = there.eliminated > _MOSTLY * expected
+    return problem.trial(tried, np.zeros_like(step) if alone else step, of_eliminated)
 
 
 def _next_damping(damping: float, ratio: float, cautious: bool) -> float:
