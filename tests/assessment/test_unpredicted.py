@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 
 import sprung
@@ -81,3 +84,16 @@ def test_a_residual_below_rounding_has_no_ratio(monkeypatch: pytest.MonkeyPatch)
     result = sprung.identify(made, tracks="shared", extras=())
     assert {drop.predicted_residual for drop in result.validation.values()} == {None}
     assert {drop.predicted for drop in result.validation.values()} == {0.0}
+
+
+@pytest.mark.parametrize(("size", "state"), [(0.002, "doubtful"), (0.02, "reject")])
+def test_a_fit_that_has_not_converged_is_rejected_only_where_it_explains_little(size: float, state: str) -> None:
+    made = campaign(1)
+    choice, decays = choose_structure(made), prepare(made).decays
+    optimum = fit_linear(decays, choice.linear_models, made.sensors, choice.known, start=TABLE_1_CAR.parameters)
+    fit, channels = uncertainty_of(optimum), [sensor.channel for sensor in made.sensors]
+    parameters, error = to_estimates(fit, choice.known), (np.full(len(channels), size), np.full(len(channels), 2.0))
+    verdict = decide_verdict(replace(fit, converged=False), error, parameters, channels)
+    assert verdict.state == state
+    assert any("did not converge" in reason for reason in verdict.reasons)
+    assert decide_verdict(fit, error, parameters, channels).state == ("accept" if size < 0.01 else "doubtful")

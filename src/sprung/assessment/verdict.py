@@ -116,15 +116,19 @@ def decide_verdict(
     size = float(relative[worst])
     unexplained = list(_unexplained(size, float(over_noise[worst]), channels[worst]))
     contradicted = max(map(abs, fit.contradictions.values()), default=0.0) > BEYOND_DOUBT
-    is_unusable = size > UNUSABLE or (size > EXPLAINED and contradicted)
+    is_explained = size <= EXPLAINED
+    is_unusable = size > UNUSABLE or (not is_explained and contradicted)
+    unconverged = list(_unconverged(fit, is_explained))
     reject = [
         *(unexplained if is_unusable else ()),
-        *_no_fit(fit, parameters),
+        *(() if is_explained else unconverged),
+        *_nothing_determined(parameters),
         *_several_vehicles(contradicting, len(drops)),
     ]
     doubt = [
         *suspected,
         *(() if is_unusable else unexplained),
+        *(unconverged if is_explained else ()),
         *_contradictions(fit),
         *_unpredicted(drops),
     ]
@@ -148,15 +152,25 @@ def _unexplained(size: float, ratio: float, channel: str) -> Iterator[str]:
         )
 
 
-def _no_fit(fit: FitStatistics, parameters: Mapping[str, Estimate]) -> Iterator[str]:
-    if not fit.converged:
+def _unconverged(fit: FitStatistics, is_explained: bool) -> Iterator[str]:
+    if fit.converged:
+        return
+    steps = f"the fit did not converge in {fit.iterations} steps"
+    if is_explained:
         yield (
-            f"the fit did not converge in {fit.iterations} steps: the records do not belong to this model, or the campaign "
-            "file describes another vehicle, load or sensor placement"
+            f"{steps}, though it explains the records: where they hardly tell parameters apart, estimates may be farther off "
+            "than their uncertainties say; known masses or further drops help"
         )
-    if not any(estimate.status == "estimated" for estimate in parameters.values()) and any(
-        estimate.status == "unidentifiable" for estimate in parameters.values()
-    ):
+    else:
+        yield (
+            f"{steps}: the records do not belong to this model, or the campaign file describes another vehicle, load or sensor "
+            "placement"
+        )
+
+
+def _nothing_determined(parameters: Mapping[str, Estimate]) -> Iterator[str]:
+    statuses = {estimate.status for estimate in parameters.values()}
+    if "estimated" not in statuses and "unidentifiable" in statuses:
         yield "nothing is determined: these recordings do not show a vehicle vibrating freely"
 
 

@@ -20,7 +20,7 @@ from sprung.vehicle.kink_means import STILL
 
 if TYPE_CHECKING:
     from sprung.vehicle.law_table import LawTable
-    from sprung.vehicle.stepping import Motion, StepMatrices
+    from sprung.vehicle.stepping import MotionBuffer, StepMatrices
 
 Array = NDArray[np.float64]
 
@@ -40,7 +40,7 @@ slope by the travel, and the error and force of the evaluation before; shape (6,
 
 @compiled
 def follow_motion(
-    step: StepMatrices, laws: LawTable, increments: Array, inputs: Array, solved: float, motion: Motion
+    step: StepMatrices, laws: LawTable, increments: Array, inputs: Array, solved: float, motion: MotionBuffer
 ) -> int:
     """Follow a motion from its first state and memories, which stand in it.
 

@@ -98,8 +98,8 @@ class StepMatrices(NamedTuple):
     has_surplus: bool
 
 
-class Motion(NamedTuple):
-    """A motion, step by step, as far as it is followed.
+class MotionBuffer(NamedTuple):
+    """Where a motion is written, step by step, as far as it is followed.
 
     Attributes
     ----------
@@ -288,7 +288,7 @@ class Stepper:
         from sprung.vehicle.compiled_steps import follow_motion  # noqa: PLC0415
 
         (drops, state), rows, laws = states.shape, self.forces.number, self.laws
-        motion = Motion(
+        motion = MotionBuffer(
             np.ones((drops, steps + 1, state + rows + 1)),
             np.empty((drops, steps + 1, self.forces.memories)),
             np.zeros((drops, steps + 1, rows)),
@@ -299,7 +299,7 @@ class Stepper:
             increments, inputs = (np.ascontiguousarray(np.swapaxes(part, 0, 1)) for part in drive)
 
         def follow(drop: int) -> None:
-            own, step = Motion(*(part[drop] for part in motion)), self._matrices[self.kind[drop]]
+            own, step = MotionBuffer(*(part[drop] for part in motion)), self._matrices[self.kind[drop]]
             finite = follow_motion(step, laws, increments[drop], inputs[drop], _SOLVED, own)
             for part in own:
                 part[finite:] = np.nan
