@@ -9,6 +9,7 @@ import pytest
 from sprung.estimation import fit_linear
 from sprung.preprocess import prepare
 from sprung.selection import ModelSearch, choose_structure, stepwise
+from sprung.selection.nonlinear import select_nonlinear_terms
 from sprung.simulation import simulate
 from sprung.vehicle import TABLE_1_CAR
 
@@ -33,3 +34,16 @@ def test_a_term_that_is_gone_beside_others_is_refused_without_being_asked_again(
     assert seen == [["engine"]]
     assert found.selected == []
     assert "it does not explain the whole misfit" in found.steps[-1].text
+
+
+def test_a_term_that_took_the_place_of_another_is_left_out_beside_nonlinear_ones() -> None:
+    """A Zener branch in the place of a damper mount has no step of its own among those of the search (once a KeyError)."""
+    car = TABLE_1_CAR.with_values(r_f=1.5, r_r=1.5)
+    campaign = simulate(car, rate=250.0, noise=0.02, seed=1, known={"total_mass": car.total_mass})
+    plain, decays = choose_structure(campaign), prepare(campaign).decays
+    fit = fit_linear(decays, plain.linear_models, plain.sensors, plain.known)
+    linear = ModelSearch(plain, fit, decays).refit(plain.with_terms(("zener",)))
+    assert linear.steps == ()
+    found = select_nonlinear_terms(linear, plain)
+    assert found.selected == ["rebound"]
+    assert (found.steps[-1].extra, found.steps[-1].against) == ("zener", "it is not needed beside rebound")

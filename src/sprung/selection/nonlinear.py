@@ -84,7 +84,8 @@ def select_nonlinear_terms(search: ModelSearch, plain: ModelStructure) -> ModelS
         return replace(search, steps=steps)
     beside = ", ".join(term for term in best.selected if not TERMS[term].is_linear or term not in search.selected)
     gains = {step.extra: step.gain for step in search.steps if step.taken}
-    gone = {term: gains[term] for term in search.selected if term not in best.selected}
+    # What took the place of another term that moves alike has no step of its own.
+    gone = {term: gains.get(term, 0.0) for term in search.selected if term not in best.selected}
     best = replace(best, steps=steps).recorded(gone, True, False, f"it is not needed beside {beside}")
     return select_gravity_leakage(best) if best.structure.is_nonlinear else best
 
