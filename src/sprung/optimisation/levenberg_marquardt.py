@@ -250,8 +250,8 @@ def _gaining_step(
     the residuals, a step may gain many times what was expected at the old ones, and the steps to come likewise.
 
     In a curved valley the straight way leads up its wall, and only the next step down again, further along: where the first
-    step loses, one more is tried from there (the watchdog). No step is tried that would gain too little. Where a step gains
-    more than expected, a longer one is tried as well.
+    step loses, or gains little while eliminated unknowns have to follow it, one more is tried from there (the watchdog). No
+    step is tried that would gain too little. Where a step gains more than expected, a longer one is tried as well.
     """
     first, raised = True, _EASED if cautious else _RAISED
     while damping < _MOST_DAMPING:
@@ -263,7 +263,8 @@ def _gaining_step(
         if not first and expected < tolerance:
             return None
         tried, gain = problem.trial(point, step, of_eliminated)
-        if first and np.isfinite(gain) and gain < _POOR * expected:
+        least = _POOR * expected if equations.eliminated > 0 else 0.0
+        if first and np.isfinite(gain) and gain < least:
             second, further = _second_step(problem, tried, damping, of_eliminated, longest)
             if gain + further > max(gain, 0.0):
                 tried, gain = second, gain + further

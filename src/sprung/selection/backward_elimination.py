@@ -47,9 +47,11 @@ def leave_out_refused(search: ModelSearch) -> ModelSearch:
     """
     for term in search.selected:
         # What refines a term goes with it.
-        if term in search.selected and (against := search.veto(term)):
-            search = search.recorded({term: search.wald_gain(term)}, True, False, against)
-            search = search.refit(search.without(term))
+        if term not in search.selected or not search.veto(term):
+            continue
+        smaller = search.refit(search.without(term))
+        if against := search.veto(term, smaller):
+            search = smaller.recorded({term: search.wald_gain(term)}, True, False, against)
     return search
 
 
@@ -88,9 +90,7 @@ def leave_out_undetermined(search: ModelSearch, statistics: FitStatistics) -> Mo
     gains = {term: search.wald_gain(term) for term, names in missing.items() if names}
     for term in sorted(gains, key=gains.__getitem__):
         smaller = search.refit(search.without(term))
-        lost = 2 * (search.fit.loglikelihood - smaller.fit.loglikelihood) / smaller.fit.disagreement
-        # What explains that much is there, however little is known of what it is.
-        if lost <= search.required(term):
+        if not search.explains_much(term, smaller):
             against = f"the recordings do not determine {', '.join(missing[term])}"
             return smaller.recorded({term: gains[term]}, True, False, against)
     return search
@@ -118,8 +118,9 @@ def leave_out_unneeded(
         What would be lost without each of the terms that are left; empty where that is the model before.
     """
     gains: dict[str, float] = {}
+    kept = {keep}
     while tried.structure.names != before.structure.names:
-        against = {term: tried.veto(term) for term in tried.selected if term != keep}
+        against = {term: tried.veto(term) for term in tried.selected if term not in kept}
         if not against:
             break
         # What is not determined beside a term that is not needed may be so without it: its turn comes last.
@@ -137,9 +138,14 @@ def leave_out_unneeded(
             if (held := _with_held_factors(tried.structure, least, undetermined[least])) is not None:
                 tried = tried.refit(held)
                 continue
+        larger = tried
         tried = tried.recorded({least: gains[least]}, True, False, against[least])
         smaller = _with_counterpart(tried, least)
         tried = _back_to(before, tried, least) if smaller.names == before.structure.names else tried.refit(smaller)
+        if against[least] and smaller.names == larger.without(least).names and not larger.veto(least, tried):
+            # Without it much is left, or others move.
+            tried, kept = larger, kept | {least}
+            continue
         if least in before.selected and tried.delta_bic(before) < 0:
             # A new term beside which an old one means nothing does not replace it unless it explains as much.
             return replace(before, steps=tried.steps), {}

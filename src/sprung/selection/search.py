@@ -28,6 +28,9 @@ Real = NDArray[np.float64]
 _HYPOTHESES = sum(not term.on_request for term in TERMS.values()) + 1
 """Hypotheses that are tried on a campaign: every term, and the leakage of gravity."""
 
+_MATTERS, _BEYOND_NOISE = 0.01, 2.0
+"""By how much a term has to move another parameter to be more than negligible: relatively, and in standard errors."""
+
 
 @shown
 @dataclass(frozen=True)
@@ -343,8 +346,17 @@ class ModelSearch:
         limit = required_gain(1, 1, 1.0, self.overdispersion)
         return not self.needs(term) or any(wald_test(self.fit, [part]) < limit for part in parts)
 
-    def veto(self, term: str) -> str:
-        """Reason against a term of the model, whatever it gains; empty where there is none."""
+    def veto(self, term: str, without: ModelSearch | None = None) -> str:
+        """Reason against a term of the model, whatever it gains; empty where there is none.
+
+        Parameters
+        ----------
+        term
+            Of the model.
+        without
+            A model without it, which shows whether the term explains much although the recordings do not determine it, or
+            matters although it is small.
+        """
         row, parameters = TERMS[term], self.fit.parameters
         limit = required_gain(1, 1, 1.0, self.overdispersion)
         below = [
@@ -352,25 +364,68 @@ class ModelSearch:
         ]
         if any(wald_test(self.fit, [(name, 0.0)]) > limit for name in below):
             return "the estimate is negative, which is not physical"
-        if undetermined := self.undetermined(term):
+        undetermined = self.undetermined(term)
+        if undetermined and not (without and self.explains_much(term, without)):
             return f"the recordings do not determine {', '.join(undetermined)}"
         if row.is_something_else(parameters):
             return "no part of its kind vibrates, relaxes or has a knee like that"
         size = abs(row.size(parameters))
-        if size < row.negligible:
+        if size < row.negligible and not (without and self.moves_others(without)):
             return f"its effect of {100 * size:.2g} % is negligible"
         return ""
+
+    def explains_much(self, term: str, without: ModelSearch) -> bool:
+        """Whether a term explains so much that it is there, however little is known of what it is.
+
+        Parameters
+        ----------
+        term
+            Of the model.
+        without
+            A model without it: what it gains counts by how much the drops contradict each other there.
+        """
+        gain = 2 * (self.fit.loglikelihood - without.fit.loglikelihood)
+        return gain / without.fit.disagreement > self.required(term)
+
+    def moves_others(self, without: ModelSearch) -> bool:
+        """Whether a positive parameter of a smaller model has another value in this one, to anybody who uses it.
+
+        Beside the total mass, by more than a percent and more than the records leave open in the smaller model. Where that
+        one leaves a misfit, whatever is added moves parameters, which says nothing.
+
+        Parameters
+        ----------
+        without
+            The smaller model.
+        """
+        if without.is_overdispersed:
+            return False
+        names, own = without.fit.names, dict(zip(self.fit.names, self.fit.iterate.u.tolist(), strict=True))
+        before = without.fit.iterate.u
+        steps = np.array([own.get(name, there) for name, there in zip(names, before.tolist(), strict=True)]) - before
+        moved = np.abs(per_total_mass(without.fit, np.eye(len(names))) @ steps)
+        least = np.maximum(_MATTERS, _BEYOND_NOISE * np.sqrt(without.relative_variances))
+        positive = np.array([name in PARAMETERS and PARAMETERS[name].positive for name in names])
+        return bool(np.any((moved > least) & positive))
 
     def undetermined(self, term: str) -> list[str]:
         """Return the positive parameters of a term of the model that are not known to a factor of e beside the total mass."""
         names = TERMS[term].parameters(self.structure.tracks, self.structure.layout)
+        places = {name: self.fit.names.index(name) for name in names if PARAMETERS[name].positive}
+        return [name for name, at in places.items() if not self.relative_variances[at] < 1]
+
+    @cached_property
+    def relative_variances(self) -> Real:
+        """Variance of each coordinate of the fit beside the total mass, of the logarithm where positive; shape (coordinate,).
+
+        Infinite where the records tell nothing.
+        """
         equations = self.fit.problem.normal_equations(self.fit.iterate)
         along = per_total_mass(self.fit, np.eye(len(self.fit.names))) @ equations.directions
-        variance = np.einsum("ud,du->u", along, np.linalg.solve(equations.information, along.T)) * self.overdispersion
+        variances = np.einsum("ud,du->u", along, np.linalg.solve(equations.information, along.T)) * self.overdispersion
         # A direction without information is not among those of the equations at all.
         seen = np.sum(equations.directions**2, axis=1) > 0.5
-        places = {name: self.fit.names.index(name) for name in names if PARAMETERS[name].positive}
-        return [name for name, at in places.items() if not (seen[at] and variance[at] < 1)]
+        return np.where(seen, variances, np.inf)
 
     def leaves_misfit(self, fit: FitResult, part: float) -> bool:
         """Whether another fit, of the decays or their beginnings, leaves more than a part of this one's model error there."""

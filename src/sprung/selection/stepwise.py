@@ -324,8 +324,8 @@ def accept_likeliest(
     """Fit linear terms one after the other until one is accepted, and those instead of it that may explain more.
 
     Where much is left to explain, a term gains by what another one would explain wholly: scores that differ little do not
-    tell which. So where the first one that is accepted leaves a misfit, the next ones are fitted as well. One that moves alike
-    is fitted in any case: noise may hide that the first one does not explain everything.
+    tell which. So where the first one that is accepted leaves more than noise, the next ones are fitted as well. One that moves
+    alike is fitted in any case: noise may hide that the first one does not explain everything.
 
     Parameters
     ----------
@@ -350,7 +350,7 @@ def accept_likeliest(
         if tried.structure.names == search.structure.names:
             search = tried
             continue
-        least = _RIVAL_SCORE * scores[term][0] if tried.is_overdispersed else inf
+        least = _RIVAL_SCORE * scores[term][0] if tried.overdispersion > 1 else inf
         rivals = [other for other in terms[number + 1 :] if scores[other][0] > least or _move_alike(term, other)]
         best = term
         for other in rivals[:_RIVALS]:
@@ -445,7 +445,7 @@ def try_term(
     if larger.is_nonlinear:
         tried, gains = leave_out_unneeded(tried, search)
         return tried.recorded(gains, True, True)
-    against, counterpart = tried.veto(term), counterpart_of(tried, term)
+    against, counterpart = tried.veto(term, search), counterpart_of(tried, term)
     tried = tried.recorded({term: gain}, True, True)
     if TERMS[term].explains_all:
         tried, against = _completed(search, tried, term, among, against)
