@@ -118,9 +118,8 @@ def leave_out_unneeded(
         What would be lost without each of the terms that are left; empty where that is the model before.
     """
     gains: dict[str, float] = {}
-    kept = {keep}
     while tried.structure.names != before.structure.names:
-        against = {term: tried.veto(term) for term in tried.selected if term not in kept}
+        against = {term: tried.veto(term) for term in tried.selected if term != keep}
         if not against:
             break
         # What is not determined beside a term that is not needed may be so without it: its turn comes last.
@@ -138,14 +137,9 @@ def leave_out_unneeded(
             if (held := _with_held_factors(tried.structure, least, undetermined[least])) is not None:
                 tried = tried.refit(held)
                 continue
-        larger = tried
         tried = tried.recorded({least: gains[least]}, True, False, against[least])
         smaller = _with_counterpart(tried, least)
         tried = _back_to(before, tried, least) if smaller.names == before.structure.names else tried.refit(smaller)
-        if against[least] and smaller.names == larger.without(least).names and not larger.veto(least, tried):
-            # Without it much is left, or others move.
-            tried, kept = larger, kept | {least}
-            continue
         if least in before.selected and tried.delta_bic(before) < 0:
             # A new term beside which an old one means nothing does not replace it unless it explains as much.
             return replace(before, steps=tried.steps), {}
