@@ -10,9 +10,10 @@ import pytest
 import sprung
 from sprung.assessment import Verdict, body_motions, cross_validate_drops, decide_verdict, estimate_model_error
 from sprung.campaign import Campaign
-from sprung.estimation import Prediction, fit_linear, to_estimates, uncertainty_of
+from sprung.estimation import FitResult, FitStatistics, Prediction, fit_linear, to_estimates, uncertainty_of
 from sprung.preprocess import prepare
 from sprung.selection.structure import choose_structure
+from sprung.uncertainty import Estimate
 from sprung.vehicle import TABLE_1_CAR
 
 LOAD = {"name": "bags", "items": [{"mass": 150, "position": (-1.0, 0.2, 0.5)}]}
@@ -23,17 +24,23 @@ def campaign(seed: int, **changed: float) -> Campaign:
     return sprung.simulate(vehicle, loads=[LOAD], noise=0.02, seed=seed, known={"total_mass": TABLE_1_CAR.total_mass})
 
 
-def judged(made: Campaign, contradicting: int = 0) -> Verdict:
-    """Fit and judge without looking for what may be wrong, which would leave the drop out."""
+def fitted(made: Campaign) -> tuple[FitResult, FitStatistics, dict[str, Estimate], list[str]]:
+    """Fit without looking for what may be wrong; with uncertainties, estimates and channels."""
     choice, decays = choose_structure(made), prepare(made).decays
     optimum = fit_linear(decays, choice.linear_models, made.sensors, choice.known, start=TABLE_1_CAR.parameters)
-    fit, channels = uncertainty_of(optimum), [sensor.channel for sensor in made.sensors]
-    motions = body_motions(optimum, decays, optimum.fitted, made.sensors)
-    drops = cross_validate_drops(optimum, fit, decays, channels, motions)
+    fit = uncertainty_of(optimum)
+    return optimum, fit, dict(to_estimates(fit, choice.known)), [sensor.channel for sensor in made.sensors]
+
+
+def judged(made: Campaign, contradicting: int = 0) -> Verdict:
+    """Fit and judge without looking for what may be wrong, which would leave the drop out."""
+    optimum, fit, parameters, channels = fitted(made)
+    motions = body_motions(optimum, optimum.decays, optimum.fitted, made.sensors)
+    drops = cross_validate_drops(optimum, fit, optimum.decays, channels, motions)
     return decide_verdict(
         fit,
         estimate_model_error(optimum),
-        to_estimates(fit, choice.known),
+        parameters,
         channels,
         (),
         drops,
@@ -88,11 +95,8 @@ def test_a_residual_below_rounding_has_no_ratio(monkeypatch: pytest.MonkeyPatch)
 
 @pytest.mark.parametrize(("size", "state"), [(0.002, "doubtful"), (0.02, "reject")])
 def test_a_fit_that_has_not_converged_is_rejected_only_where_it_explains_little(size: float, state: str) -> None:
-    made = campaign(1)
-    choice, decays = choose_structure(made), prepare(made).decays
-    optimum = fit_linear(decays, choice.linear_models, made.sensors, choice.known, start=TABLE_1_CAR.parameters)
-    fit, channels = uncertainty_of(optimum), [sensor.channel for sensor in made.sensors]
-    parameters, error = to_estimates(fit, choice.known), (np.full(len(channels), size), np.full(len(channels), 2.0))
+    _, fit, parameters, channels = fitted(campaign(1))
+    error = np.full(len(channels), size), np.full(len(channels), 2.0)
     verdict = decide_verdict(replace(fit, converged=False), error, parameters, channels)
     assert verdict.state == state
     assert any("did not converge" in reason for reason in verdict.reasons)
