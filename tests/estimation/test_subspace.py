@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from sprung.estimation import canonical_basis
-from sprung.estimation.problem import identifiable_equations
+from sprung.estimation.identifiability import identifiable_equations
 
 
 @pytest.mark.parametrize("seed", range(5))

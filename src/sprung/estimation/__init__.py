@@ -17,6 +17,7 @@ from sprung.estimation.estimates import (
     unidentifiable_combinations,
 )
 from sprung.estimation.fit_result import FitResult, Inflater
+from sprung.estimation.identifiability import NO_INFORMATION, RANK, identifiable_subspace
 from sprung.estimation.linear_fit import NEAR, STARTS, escape_local_optimum, fit_linear, weigh_statements
 from sprung.estimation.linear_scores import score_linear_term, score_linear_terms
 from sprung.estimation.low_pass import HIGHEST_CORNER, LowPass, SampledLowPass, unexplained_squares
@@ -27,7 +28,7 @@ from sprung.estimation.nonlinear_scores import score_nonlinear_terms
 from sprung.estimation.overdispersion import autocorrelation_inflation
 from sprung.estimation.prediction import Prediction, predictions
 from sprung.estimation.priors import Coordinates, PriorsAndConstraints, UsualValue
-from sprung.estimation.problem import CONVERGED, MOST_STEPS, NO_INFORMATION, RANK, identifiable_subspace
+from sprung.estimation.problem import CONVERGED, MOST_STEPS
 from sprung.estimation.profile import profiled
 from sprung.estimation.score_test import ScoreTest, lift_priors, per_total_mass, score_added, wald_test
 from sprung.estimation.starts import (

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.estimation.fit_result import FitResult
-from sprung.estimation.problem import identifiable_equations
+from sprung.estimation.identifiability import identifiable_equations
 from sprung.preprocess import FreeDecay
 
 Real = NDArray[np.float64]

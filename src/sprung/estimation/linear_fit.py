@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from sprung.estimation.closed_form import linear_objective
 from sprung.estimation.fit_result import FitResult
+from sprung.estimation.identifiability import least_information
 from sprung.estimation.objective import LinearObjective
 from sprung.estimation.priors import Coordinates, PriorsAndConstraints, UsualValue, scaling_direction
 from sprung.estimation.problem import (
@@ -22,7 +23,6 @@ from sprung.estimation.problem import (
     NOISE_FLOOR,
     EstimationProblem,
     Iterate,
-    least_information,
 )
 from sprung.estimation.starts import VehicleSize, start_grid
 from sprung.estimation.statements import readout_of, statements_of

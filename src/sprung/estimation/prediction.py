@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.estimation.fit_result import FitResult
-from sprung.estimation.problem import least_information
+from sprung.estimation.identifiability import least_information
 
 Real = NDArray[np.float64]
 

@@ -12,6 +12,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from sprung.estimation.identifiability import identifiable_equations
 from sprung.estimation.objective import NoiseCoupling, Objective, ObjectiveAt
 from sprung.estimation.priors import PriorsAndConstraints
 from sprung.optimisation import Maximum, NormalEquations, maximise
@@ -21,12 +22,6 @@ Real = NDArray[np.float64]
 
 NOISE_FLOOR = 1e-6
 """Smallest noise level, as a part of a channel's root-mean-square: below it, rounding in the sums of squares would show."""
-
-RANK = 1e-12
-"""Information, as a part of the largest, that is nothing but rounding."""
-
-NO_INFORMATION = 1.0
-"""Fisher information of a logarithm below which its value is not determined to a factor of e."""
 
 CONVERGED = 1e-8
 """Expected gain in log-likelihood at which a fit has converged: the parameters are within 1e-4 of a standard error."""
@@ -47,48 +42,6 @@ _ROUNDING = 1e-10  # of the cost
 _LARGEST_FALL = 0.25  # factor by which a step may lower a noise variance at the most, where unknowns couple them
 _NOISE_ROUNDS = 2  # after the first, in which noise levels settle that unknowns couple
 _MOST_ROUNDS, _SETTLED = 8, 3e-3  # in which they settle in the end, and relative change from which they have
-
-
-def identifiable_subspace(information: Real) -> Real:
-    """Return the :term:`identifiable subspace`: the directions of which data and priors have information.
-
-    Parameters
-    ----------
-    information
-        Fisher information in logarithms of the parameters, shape (direction, direction).
-
-    Returns
-    -------
-    ndarray
-        Orthonormal columns, shape (direction, identifiable direction).
-    """
-    if not np.isfinite(information).all():  # derivatives of a motion that runs away overflow: they determine nothing
-        return np.zeros((len(information), 0))
-    eigenvalues, vectors = np.linalg.eigh(information)
-    identifiable = eigenvalues >= least_information(eigenvalues)
-    return np.eye(len(information)) if identifiable.all() else vectors[:, identifiable]
-
-
-def least_information(eigenvalues: Real) -> float:
-    """Information below which a direction is not determined: one, or rounding beside the largest information there is."""
-    return max(NO_INFORMATION, RANK * float(eigenvalues.max(initial=0.0)))
-
-
-def identifiable_equations(information: Real, gradient: Real, null_space: Real) -> NormalEquations:
-    """Return normal equations in the identifiable directions of a null space of constraints.
-
-    The other directions are left alone: they would only wander.
-
-    Parameters
-    ----------
-    information, gradient
-        In the null space, shapes (direction, direction) and (direction,).
-    null_space
-        Orthonormal columns, shape (coordinate, direction).
-    """
-    subspace = identifiable_subspace(information)
-    scaling = subspace.T @ (np.diag(information)[:, None] * subspace)
-    return NormalEquations(subspace.T @ information @ subspace, subspace.T @ gradient, scaling, null_space @ subspace)
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 
 from sprung.estimation.elimination import eliminate
 from sprung.estimation.fit_result import FitResult
+from sprung.estimation.identifiability import RANK, identifiable_equations, identifiable_subspace
 from sprung.estimation.priors import scaling_direction
-from sprung.estimation.problem import RANK, identifiable_equations, identifiable_subspace
 from sprung.vehicle import evaluate_quantity, is_of_sensor
 
 Real = NDArray[np.float64]

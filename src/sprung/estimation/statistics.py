@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from sprung.display import shown
 from sprung.estimation.fit_result import FitResult, Inflater
+from sprung.estimation.identifiability import NO_INFORMATION, RANK
 from sprung.estimation.linear_fit import STARTS, escape_local_optimum, fit_linear
 from sprung.estimation.priors import scaling_direction
-from sprung.estimation.problem import NO_INFORMATION, RANK
 from sprung.estimation.score_test import per_total_mass
 from sprung.estimation.subspace import canonical_basis
 from sprung.preprocess import FreeDecay

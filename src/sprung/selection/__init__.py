@@ -17,7 +17,8 @@ from sprung.selection.model_term import ModelTerm
 from sprung.selection.nonlinear import select_nonlinear_terms
 from sprung.selection.ordinary_vehicle import is_ordinary, may_be_astray, or_from_ordinary_vehicle
 from sprung.selection.scoring import WORTH_A_FIT, score_terms
-from sprung.selection.search import ModelSearch, SelectionStep
+from sprung.selection.search import ModelSearch
+from sprung.selection.selection_step import SelectionStep
 from sprung.selection.sensor_errors import (
     FAR,
     SensorError,

@@ -15,6 +15,7 @@ from sprung.selection.backward_elimination import leave_out_unneeded
 from sprung.selection.contact import from_contact
 from sprung.selection.error_budget import MISFIT_LEFT
 from sprung.selection.evident_faults import with_evident_fault
+from sprung.selection.further_terms import select_terms_beside
 from sprung.selection.linear_terms import FLEXIBLE_BODIES
 from sprung.selection.ordinary_vehicle import (
     ITERATIONS,
@@ -25,7 +26,6 @@ from sprung.selection.ordinary_vehicle import (
 from sprung.selection.search import ModelSearch
 from sprung.selection.several_vehicles import divide_drops, of_group
 from sprung.selection.starts import start_variants
-from sprung.selection.stepwise import select_terms_beside
 from sprung.selection.structure import ModelStructure
 from sprung.selection.terms import TERMS
 from sprung.selection.unlike_drops import UnlikeDrops

@@ -18,18 +18,13 @@ from sprung.selection.from_ordinary_vehicle import (
     select_beside_usual_terms,
     select_from_ordinary_vehicle,
 )
+from sprung.selection.further_terms import select_further_terms, select_terms_beside, select_terms_in_whole
 from sprung.selection.linear_terms import FLEXIBLE_BODIES
 from sprung.selection.nonlinear_terms import DAMPER_LAW
 from sprung.selection.ordinary_vehicle import fit_usual_terms
 from sprung.selection.scoring import score_terms
 from sprung.selection.search import ModelSearch
-from sprung.selection.stepwise import (
-    rank_terms,
-    select_further_terms,
-    select_terms_beside,
-    select_terms_in_whole,
-    try_likeliest,
-)
+from sprung.selection.stepwise import rank_terms, try_likeliest
 from sprung.selection.structure import ModelStructure
 from sprung.selection.term_fits import begin_nonlinear_fit, fit_term, select_gravity_leakage
 from sprung.selection.terms import TERMS

@@ -10,12 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sprung.assessment import estimate_model_error
-from sprung.display import shown
 from sprung.estimation import NEAR, FitResult, per_total_mass, unexplained_squares, wald_test
 from sprung.preprocess import FreeDecay
 from sprung.progress import Progress, silent
 from sprung.selection.error_budget import LEAST_SHARE, MODEL_ERROR, OVERDISPERSED, UNEXPLAINED, required_gain
 from sprung.selection.linear_terms import SEPARATE_TRACKS
+from sprung.selection.selection_step import SelectionStep
 from sprung.selection.sensor_errors import SensorError
 from sprung.selection.starts import fit_structure, states_by_coordinates
 from sprung.selection.structure import ModelStructure
@@ -30,44 +30,6 @@ _HYPOTHESES = sum(not term.on_request for term in TERMS.values()) + 1
 
 _MATTERS, _BEYOND_NOISE = 0.01, 2.0
 """By how much a term has to move another parameter to be more than negligible: relatively, and in standard errors."""
-
-
-@shown
-@dataclass(frozen=True)
-class SelectionStep:
-    """One step of the search for the model.
-
-    Attributes
-    ----------
-    extra
-        The model term that was tried.
-    gain
-        In twice the log-likelihood, divided by the overdispersion: expected from a score test where the term was not fitted,
-        lost without it (Wald test) where several were fitted at once.
-    asked
-        Gain required of it.
-    fitted
-        Whether it was fitted, or only scored.
-    taken
-        Whether it stayed in the model.
-    against
-        Why it did not, where it gained enough.
-    """
-
-    extra: str
-    gain: float
-    asked: float
-    fitted: bool
-    taken: bool
-    against: str = ""
-    joint: bool = False
-    """Whether it was fitted together with the term of the step before it."""
-
-    @property
-    def text(self) -> str:
-        """The step in words."""
-        reason = f", but {self.against}" if self.against else ""
-        return f"{self.extra} (Δ2lnL = {max(self.gain, 0.0):.0f}, required {self.asked:.0f}{reason})"
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,13 +11,11 @@ from collections.abc import Collection, Sequence
 from dataclasses import replace
 from math import inf
 
-from sprung.estimation import FitResult, beginning_of
-from sprung.preprocess import FreeDecay
+from sprung.estimation import FitResult
 from sprung.selection.backward_elimination import counterpart_of, leave_out_unneeded
-from sprung.selection.contact import from_contact, without_landings
+from sprung.selection.contact import from_contact
 from sprung.selection.error_budget import MISFIT_LEFT, MISFIT_LEFT_BY_ALL
 from sprung.selection.evident_faults import with_evident_fault
-from sprung.selection.low_pass import confirm_low_pass, select_low_pass
 from sprung.selection.ordinary_vehicle import may_be_astray, or_from_ordinary_vehicle
 from sprung.selection.scoring import WORTH_A_FIT, Scores, score_terms
 from sprung.selection.search import ModelSearch
@@ -43,17 +41,8 @@ _EXPLAINED = 0.7
 _RIVALS, _RIVAL_SCORE = 2, 0.5
 """How many terms are fitted beside one that leaves a misfit, and their scores at the least, as a part of its score."""
 
-_MUCH_LEFT = 0.5
-"""Part of the model error that a term leaves at the most beside which terms are tried again that were refused without it."""
-
 _CONTINUED = 3
 """How many times a fit is continued that has not converged and explains nearly all."""
-
-_FURTHER_ROUNDS, _TRIED_BESIDE = 8, 2
-"""How many times terms are looked for beside nonlinear ones, and how many are fitted each time until one is accepted."""
-
-_RIVALLING = 0.5
-"""Part of what a low-pass gains that a term has to gain by its first steps to be fitted in its place."""
 
 
 def select_linear_terms(
@@ -86,202 +75,6 @@ def select_linear_terms(
             search = from_contact(or_from_ordinary_vehicle(search))
         refused = ()
     return search
-
-
-def select_terms_beside(search: ModelSearch) -> ModelSearch:
-    """Return the search after terms of any kind, and a low-pass of the loggers, have been tried beside its nonlinear ones.
-
-    Where much is missing, every fit is slow. What the beginnings of the decays show is found there first; the whole decays
-    then have little more to show.
-
-    Parameters
-    ----------
-    search
-        The present model and its fit, of the decays or of their beginnings.
-
-    Returns
-    -------
-    ModelSearch
-        As given where a sensor or drops are at fault, with what is wrong with them.
-    """
-    search = with_evident_fault(search)
-    if search.fault is not None:
-        return search
-    beginnings = [beginning_of(decay) for decay in search.decays]
-    early = from_contact(replace(search, decays=beginnings), on_the_way=True)
-    return select_terms_in_whole(select_further_terms(early, whole=False), search.decays)
-
-
-def select_terms_in_whole(early: ModelSearch, decays: Sequence[FreeDecay]) -> ModelSearch:
-    """Return the search after terms and a low-pass have been tried in whole decays, once their beginnings have decided.
-
-    Parameters
-    ----------
-    early
-        A nonlinear model and its fit to the beginnings.
-    decays
-        As they began before that.
-
-    Returns
-    -------
-    ModelSearch
-    """
-    whole = [
-        decay.shifted(decay.samples_to(beginning.start)) for decay, beginning in zip(decays, early.decays, strict=True)
-    ]
-    search = from_contact(replace(early, decays=whole), on_the_way=True)
-    # What leaves so much is not the vehicle: another base may lead to it, and further terms beside this one would be slow.
-    return search if early.lacks_something else select_further_terms(search, whole=True)
-
-
-def select_further_terms(search: ModelSearch, whole: bool) -> ModelSearch:
-    """Try terms and a low-pass round after round, until none is accepted.
-
-    Parameters
-    ----------
-    search
-        The present model and its fit.
-    whole
-        Whether the beginnings of the decays have decided already: only scores are looked at, until they show another term.
-
-    Returns
-    -------
-    ModelSearch
-    """
-    tried: frozenset[str] = frozenset()
-    # Knees are passed and friction turns round most often in the beginnings: what shows in no score was tried there.
-    decided = search.structure if whole else None
-    for _ in range(_FURTHER_ROUNDS):
-        if not search.structure.is_nonlinear:
-            break
-        before = search
-        search, fitted = _try_scored(search, tried)
-        tried |= {*fitted}
-        if search.structure is before.structure:
-            if search.structure is decided or (whole and not search.is_overdispersed):
-                break
-            # What a wheel does that is still in the air would hide what shows in no score.
-            search = without_landings(search)
-            untried = _untried(search, tried)
-            search = _accept_low_pass(search, _rivals(untried), _hidden(untried))
-            if search.structure is before.structure and not search.is_overdispersed:
-                break
-        if search.structure is before.structure:
-            search = _accept_unscored(search, tried, with_parts=not whole and search.lacks_something)
-        has_moved = search.fit is not before.fit
-        explains_much = has_moved and not before.leaves_misfit(search.fit, _MUCH_LEFT)
-        if explains_much or _hidden(search.structure.terms) != _hidden(before.structure.terms):
-            # What was refused without it may be needed beside it.
-            tried = frozenset()
-        if not has_moved:
-            break
-    return search
-
-
-def _try_scored(search: ModelSearch, tried: Collection[str]) -> tuple[ModelSearch, list[str]]:
-    """Try open terms by their scores until one is accepted, but for those that no score tells from others; name the best."""
-    untried = _untried(search, tried)
-    rivals = _rivals(untried)
-    terms = [term for term in untried if term not in rivals]
-    _, scores = score_terms(search, terms)
-    ratios = {term: gain / (search.required(term) * search.overdispersion) for term, (gain, _) in scores.items()}
-    best = sorted((term for term in terms if ratios[term] > 1), key=lambda term: -ratios[term])[:_TRIED_BESIDE]
-    fitted: list[str] = []
-    for term in best:
-        if term in fitted:
-            continue
-        first = None
-        if not search.is_overdispersed:
-            # Scores of a part of the decays hold for all of them if they are more than chance: a step in all of them tells.
-            stepped, gain = take_first_step(search, term)
-            against = stepped.veto(term) if stepped.fit.converged else ""
-            if against or gain < search.required(term):
-                search, fitted = search.recorded({term: gain}, bool(against), False, against), [*fitted, term]
-                continue
-            first = stepped.fit if stepped.fit.converged else None
-        laws = _laws_of_part(term, untried)
-        fitted += laws
-        tested = try_term(search, term, first=first) if laws == [term] else try_likeliest(search, laws)
-        if tested.structure is not search.structure:
-            return confirm_low_pass(tested), fitted
-        search = tested
-    return search, fitted
-
-
-def _untried(search: ModelSearch, tried: Collection[str]) -> list[str]:
-    """Return the open terms that are still to be tried."""
-    return [term for term in search.open_terms(tuple(TERMS)) if term not in tried]
-
-
-def _accept_rival(search: ModelSearch, terms: Sequence[str], least: float = 0.0) -> ModelSearch:
-    """Fit terms that no score tells from each other, and accept the likeliest if it is needed and may gain so much."""
-    found = try_likeliest(search, terms, least) if terms else search
-    return found if found.structure is search.structure else confirm_low_pass(found)
-
-
-def _accept_unscored(search: ModelSearch, tried: Collection[str], with_parts: bool) -> ModelSearch:
-    """Accept what no score shows: a term among those that refine the same, a friction, or a part that vibrates by itself."""
-    # What the likeliest of each kind beats may be needed beside it: it is tried again in the next round.
-    for kind in (_rivals, _hidden, *([_parts] if with_parts else [])):
-        found = _accept_rival(search, kind(_untried(search, tried)))
-        if found.structure is not search.structure:
-            return found
-        search = found
-    return search
-
-
-def _accept_low_pass(search: ModelSearch, *rivals: Sequence[str]) -> ModelSearch:
-    """Accept a low-pass of the loggers if the recordings support one, unless terms that show in no score explain more.
-
-    A low-pass resembles knees, and so does whatever else is missing: it is looked for once nothing else shows.
-    """
-    found = select_low_pass(search)
-    if found.structure is search.structure:
-        return search
-    least = _RIVALLING * found.gain_over(search) * found.overdispersion
-    others = (_accept_rival(search, terms, least) for terms in rivals)
-    return max((found, *others), key=lambda other: other.gain_over(found))
-
-
-def _hidden(terms: Sequence[str]) -> list[str]:
-    """Return the terms that show in no score once a fit of everything at once has lost them, but when the rest is right."""
-    return [term for term in terms if TERMS[term].resembles_others]
-
-
-def _parts(terms: Sequence[str]) -> list[str]:
-    """Return the terms that are parts which vibrate by themselves: where they are nothing no score tells their place."""
-    return [term for term in terms if TERMS[term].vibrates_by_itself]
-
-
-def _settled(search: ModelSearch, tried: ModelSearch, term: str) -> tuple[ModelSearch, str]:
-    """Fit a model on that explains nearly all with a term, as long as it gains more than chance does; tell what is against it.
-
-    Parts of which little is known, people on their seats above all, are a long way off.
-    """
-    for _ in range(_CONTINUED):
-        if tried.gain_over(search) <= search.required(term):
-            return tried, ""
-        if tried.fit.converged or search.leaves_misfit(tried.fit, MISFIT_LEFT):
-            break
-        before, tried = tried, tried.refit(tried.structure)
-        if tried.gain_over(before) < search.required_of_switch:
-            tried = replace(tried, fit=replace(tried.fit, converged=True))
-    if not tried.fit.converged:
-        return tried, "the fit with it did not converge"
-    is_like_noise = not search.is_misfit_small or tried.overdispersion <= _EXPLAINED * search.overdispersion
-    return tried, "" if is_like_noise else "what is left is no more like noise with it"
-
-
-def _laws_of_part(term: str, terms: Sequence[str]) -> list[str]:
-    """Return a term and those of others that are laws of the same part."""
-    part = TERMS[term].part
-    return [term, *(other for other in terms if other != term and part and TERMS[other].part == part)]
-
-
-def _rivals(terms: Sequence[str]) -> list[str]:
-    """Return the terms that are stationary, which no score shows, and those that refine the same."""
-    refined = {TERMS[term].refines for term in terms if TERMS[term].is_stationary}
-    return [term for term in terms if TERMS[term].refines in refined]
 
 
 def rank_terms(search: ModelSearch, scores: Scores, weight: float) -> tuple[ModelSearch, list[str]]:
@@ -453,6 +246,25 @@ def try_term(
         refused = search.recorded({term: gain}, True, False, against)
         return try_term(refused, counterpart, among) if counterpart in refused.open_terms(among) else refused
     return leave_out_unneeded(tried, search, keep=term)[0]
+
+
+def _settled(search: ModelSearch, tried: ModelSearch, term: str) -> tuple[ModelSearch, str]:
+    """Fit a model on that explains nearly all with a term, as long as it gains more than chance does; tell what is against it.
+
+    Parts of which little is known, people on their seats above all, are a long way off.
+    """
+    for _ in range(_CONTINUED):
+        if tried.gain_over(search) <= search.required(term):
+            return tried, ""
+        if tried.fit.converged or search.leaves_misfit(tried.fit, MISFIT_LEFT):
+            break
+        before, tried = tried, tried.refit(tried.structure)
+        if tried.gain_over(before) < search.required_of_switch:
+            tried = replace(tried, fit=replace(tried.fit, converged=True))
+    if not tried.fit.converged:
+        return tried, "the fit with it did not converge"
+    is_like_noise = not search.is_misfit_small or tried.overdispersion <= _EXPLAINED * search.overdispersion
+    return tried, "" if is_like_noise else "what is left is no more like noise with it"
 
 
 def _completed(
