@@ -11,7 +11,14 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from sprung.campaign import Campaign
-from sprung.estimation import FitStatistics, fit_jointly, scale_of, to_estimates, unidentifiable_combinations
+from sprung.estimation import (
+    FitStatistics,
+    fit_jointly,
+    fit_linear,
+    scale_of,
+    to_estimates,
+    unidentifiable_combinations,
+)
 from sprung.preprocess import prepare
 from sprung.simulation import free_decays, simulate
 from sprung.uncertainty import Estimate, KnownValue
@@ -295,3 +302,17 @@ def test_a_contradiction_is_a_distance_in_standard_uncertainties_of_the_differen
     found, _ = fit(campaign, TABLE_1_CAR)
     assert abs(stated - truth) > 3 * std
     assert found.contradictions["total_mass"] == pytest.approx(4.0, rel=0.05)
+
+
+def test_what_a_fit_has_still_to_gain_contradicts_no_statement() -> None:
+    """A fit that was stopped on its way: before, each of its statements was contradicted by all that was left to gain."""
+    known = {"total_mass": KnownValue(TABLE_1_CAR.total_mass, 2.0), "k_sf": KnownValue(TABLE_1_CAR.k_sf, 50.0)}
+    campaign = simulate(TABLE_1_CAR, loads=[load_for(TABLE_1_CAR)], noise=0.02, seed=16, known=known)
+    start = TABLE_1_CAR.parameters | {"k_tf": 1.01 * TABLE_1_CAR.k_tf, "I_yy": 1.01 * TABLE_1_CAR.I_yy}
+    elements, names = linear_elements(TABLE_1_CAR.tracks), tuple(start)
+    models = {load.name: LinearModel.of(elements + load.elements(), names) for load in campaign.loads}
+    stopped = fit_linear(prepare(campaign).decays, models, campaign.sensors, campaign.known, start=start, most=0)
+    assert stopped.remaining_gain > 100
+    conflicts = stopped.problem.conflicts(stopped.iterate, 1.0)
+    assert {"total_mass", "k_sf"} <= {*conflicts}
+    assert max(conflicts.values()) < 4

@@ -11,7 +11,7 @@ from sprung.errors import InputError
 from sprung.estimation import fit_linear
 from sprung.preprocess import prepare
 from sprung.selection import ModelSearch, choose_structure
-from sprung.selection.backward_elimination import leave_out_refused
+from sprung.selection.backward_elimination import _with_held_factors, leave_out_refused
 from sprung.selection.terms import TERMS
 from sprung.simulation import simulate
 from sprung.vehicle import REFINED, TABLE_1_CAR, Vehicle
@@ -51,6 +51,17 @@ def test_what_refines_a_refused_term_goes_with_it() -> None:
     search = ModelSearch(plain, fit, decays).refit(curved, most=0)
     assert search.selected == ["damper-curve", "rounded-knee"]
     assert leave_out_refused(search).selected == []
+
+
+def test_undetermined_factors_are_held_once() -> None:
+    """Where a model leaves so much that they stay undetermined, the term is left out next: the search comes to an end."""
+    campaign = simulate(TABLE_1_CAR, rate=250.0, noise=0.02, seed=1)
+    structure = choose_structure(campaign).with_terms(("damper-curve", "rebound-knee"))
+    held = _with_held_factors(structure, "rebound-knee", ["b_kr", "b_qr"])
+    assert held is not None
+    assert {*held.usual} == {"b_kr", "b_qr"}
+    assert _with_held_factors(held, "rebound-knee", ["b_kr"]) is None
+    assert _with_held_factors(held, "rebound-knee", ["b_kf", "b_kr"]) is not None
 
 
 @pytest.mark.parametrize(

@@ -285,7 +285,7 @@ class EstimationProblem:
         if not gain > -_RUNAWAY * float(self._observations.sum()):
             return iterate, -np.inf
         tried = Iterate(u, at.reweighted(1 / self.noise_variance(at.residual_sums, iterate.at)))
-        return tried, max(gain, 0.0) if gain >= -_ROUNDING * abs(self.cost(iterate)) else gain
+        return tried, 0.0 if 0 > gain >= -_ROUNDING * abs(self.cost(iterate)) else gain
 
     def maximise(
         self,
@@ -363,7 +363,7 @@ class EstimationProblem:
         Parameters
         ----------
         iterate
-            The optimum.
+            The optimum, or where a fit ended near it.
         inflation
             Overdispersion of the records.
 
@@ -375,6 +375,7 @@ class EstimationProblem:
         """
         found = {}
         every, _ = self.priors.residuals(iterate.u)
+        _, left = identifiable_equations(*self.system(iterate, inflation)).step()
         for name, known in self.priors.statements.items():
             if is_of_sensor(name):
                 continue  # what is beyond them is a fault
@@ -386,6 +387,7 @@ class EstimationProblem:
             # What the optimum still misses of an uncertain statement would be gained as well.
             missed, _ = without.residuals(iterate.u)
             gain += float(every @ every - missed @ missed)
+            gain -= left  # what a fit that ended early would gain with the statement is not gained without it
             away = abs(self.priors.change(name, iterate.u, move))
             if not known.is_exact or away > _EXACT_ENOUGH * abs(known.value):
                 found[name] = max(gain, 0.0) ** 0.5

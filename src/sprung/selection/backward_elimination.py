@@ -161,10 +161,12 @@ def _back_to(before: ModelSearch, tried: ModelSearch, term: str) -> ModelSearch:
 def _with_held_factors(structure: ModelStructure, term: str, undetermined: Sequence[str]) -> ModelStructure | None:
     """Return the structure with undetermined factors of a term held near one; None where others are, or all of the term's.
 
-    The recordings may show it at one of the axles only.
+    The recordings may show it at one of the axles only. None also where they are held already: in a fit that leaves much, all
+    that is known counts little beside it.
     """
     is_whole = {*undetermined} == {*TERMS[term].parameters(structure.tracks, structure.layout)}
-    if is_whole or any(NEUTRAL.get(name) != 1.0 for name in undetermined):
+    is_held = {*undetermined} <= {*structure.usual}
+    if is_whole or is_held or any(NEUTRAL.get(name) != 1.0 for name in undetermined):
         return None
     held = dict.fromkeys(undetermined, UsualValue(1.0, _HELD))
     return replace(structure, usual={**structure.usual, **held})
