@@ -75,3 +75,12 @@ def test_what_most_vehicles_have_beside_a_term_is_there_with_it() -> None:
     assert not TERMS["tyre-damping"].is_usual_beside(())
     assert not TERMS["tyre-damping"].is_usual_beside(("damper-mount",))
     assert not TERMS["second-knee"].is_usual_beside(("damper-curve",))
+
+
+def test_what_takes_the_place_of_a_term_is_never_that_term_again() -> None:
+    """A search that follows counterparts comes to an end."""
+    for name in TERMS:
+        followed = [name]
+        while counterpart := TERMS[followed[-1]].counterpart:
+            assert counterpart not in followed
+            followed.append(counterpart)
