@@ -4,9 +4,14 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from sprung.selection.scoring import score_terms
 from sprung.selection.search import ModelSearch
 from sprung.selection.sensor_errors import FAR, find_sensor_error, furthest_from_stated
-from sprung.selection.unlike_drops import find_unlike_drops
+from sprung.selection.terms import TERMS
+from sprung.selection.unlike_drops import ITERATIONS, UnlikeDrops, find_unlike_drops, outstanding_drops
+
+_TRIED = 2
+"""Terms that may explain why drops stand out: the best by their scores."""
 
 
 def with_evident_fault(search: ModelSearch) -> ModelSearch:
@@ -27,5 +32,20 @@ def with_evident_fault(search: ModelSearch) -> ModelSearch:
     # What a sensor has been pulled far for leaves nothing to explain.
     if not search.lacks_something and abs(furthest_from_stated(search)[0]) <= FAR:
         return search
-    fault = find_sensor_error(search) or find_unlike_drops(search)
+    fault = find_sensor_error(search) or _unexplained_drops(search)
     return search if fault is None else replace(search, fault=fault)
+
+
+def _unexplained_drops(search: ModelSearch) -> UnlikeDrops | None:
+    """Return the drops that are unlike all others, if no further term makes them like these.
+
+    Drops that are the only ones to roll stand out where what is missing shows in roll alone.
+    """
+    unlike = find_unlike_drops(search)
+    if unlike is None:
+        return None
+    _, scores = score_terms(search, search.open_terms(tuple(TERMS)))
+    ratios = {term: gain / (search.required(term) * search.overdispersion) for term, (gain, _) in scores.items()}
+    best = sorted((term for term in ratios if ratios[term] > 1), key=lambda term: -ratios[term])[:_TRIED]
+    tried = (search.refit(search.with_terms([term]), ITERATIONS, beginning_only=True) for term in best)
+    return None if any(not outstanding_drops(one) for one in tried) else unlike

@@ -24,7 +24,7 @@ _MOST = 0.25
 _LEFT = 0.5
 """Part of their model error that the other drops may leave once these are left out, or have another load."""
 
-_ITERATIONS = 22
+ITERATIONS = 22
 """Of the fits that confirm it, at the most."""
 
 
@@ -60,7 +60,7 @@ def find_unlike_drops(search: ModelSearch) -> UnlikeDrops | None:
         None where no drop stands out, and where the other drops are explained no better without those that do.
     """
     decays = search.decays
-    unlike = _outstanding(search)
+    unlike = outstanding_drops(search)
     if not 0 < len(unlike) <= _MOST * len(decays):
         return None
     names = tuple(decays[drop].file for drop in unlike)
@@ -70,18 +70,24 @@ def find_unlike_drops(search: ModelSearch) -> UnlikeDrops | None:
         other = dict(zip(loads, loads[::-1], strict=True))
         changed = {decays[drop].file: other[decays[drop].load] for drop in unlike}
         relabelled = [replace(decay, load=changed.get(decay.file, decay.load)) for decay in decays]
-        exchanged = replace(search, decays=relabelled).refit(search.structure, _ITERATIONS, beginning_only=True)
-        if not _outstanding(exchanged) and _part_left(search, exchanged, kept, kept) < _LEFT:
+        exchanged = replace(search, decays=relabelled).refit(search.structure, ITERATIONS, beginning_only=True)
+        if not outstanding_drops(exchanged) and _part_left(search, exchanged, kept, kept) < _LEFT:
             return UnlikeDrops(names, changed)
     without = replace(search, decays=[decays[drop] for drop in kept]).refit(
-        search.structure, _ITERATIONS, beginning_only=True, states=search.fit.states[kept]
+        search.structure, ITERATIONS, beginning_only=True, states=search.fit.states[kept]
     )
     is_confirmed = _part_left(search, without, kept, range(len(kept))) < _LEFT
     return UnlikeDrops(names, {}) if is_confirmed else None
 
 
-def _outstanding(search: ModelSearch) -> list[int]:
-    """Return the drops, by their positions, that leave much more than the median one, by itself and over their motion."""
+def outstanding_drops(search: ModelSearch) -> list[int]:
+    """Return the drops, by their positions, that leave much more than the median one, by itself and over their motion.
+
+    Parameters
+    ----------
+    search
+        A model and its fit.
+    """
     left = np.array([_squares(residual, search.fit.weights) for residual in search.fit.residuals])
     moved = np.array([_squares(fitted, search.fit.weights) for fitted in search.fit.fitted])
     own, over_motion = (part / np.median(part) for part in (left, left / moved))
