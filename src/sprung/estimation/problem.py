@@ -39,6 +39,7 @@ _RUNAWAY = 2 * np.log(1e6)
 No derivative is to be had there, and no step leads back."""
 
 _ROUNDING = 1e-10  # of the cost
+_DIGITS = 4  # of the gain by which a statement is tested: it is a difference of larger ones
 _LARGEST_FALL = 0.25  # factor by which a step may lower a noise variance at the most, where unknowns couple them
 _NOISE_ROUNDS = 2  # after the first, in which noise levels settle that unknowns couple
 _MOST_ROUNDS, _SETTLED = 8, 3e-3  # in which they settle in the end, and relative change from which they have
@@ -390,7 +391,7 @@ class EstimationProblem:
             gain -= left  # what a fit that ended early would gain with the statement is not gained without it
             away = abs(self.priors.change(name, iterate.u, move))
             if not known.is_exact or away > _EXACT_ENOUGH * abs(known.value):
-                found[name] = max(gain, 0.0) ** 0.5
+                found[name] = max(round(gain, _DIGITS), 0.0) ** 0.5
         return found
 
 
