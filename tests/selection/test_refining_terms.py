@@ -12,7 +12,7 @@ from sprung.campaign import ModelChoice
 from sprung.estimation import fit_linear
 from sprung.preprocess import prepare
 from sprung.progress import silent
-from sprung.selection import further_terms
+from sprung.selection import further_terms, scoring
 from sprung.selection.search import ModelSearch
 from sprung.selection.starts import fit_structure
 from sprung.selection.structure import choose_structure
@@ -131,7 +131,7 @@ def test_friction_that_shows_in_no_score_is_tried_once_nothing_else_is_needed(mo
     decays = prepare(campaign).decays
     first = fit_linear(decays, plain.linear_models, campaign.sensors, plain.known, start=TABLE_1_CAR.parameters)
     search = ModelSearch(curved, fit_structure(curved, decays, first, 1.0, silent), decays)
-    monkeypatch.setattr(further_terms, "score_terms", lambda search, terms: (search, dict.fromkeys(terms, (0.0, 0.0))))
+    monkeypatch.setattr(scoring, "score_terms", lambda search, terms: (search, dict.fromkeys(terms, (0.0, 0.0))))
     found = further_terms.select_terms_beside(search)
     assert "friction" in found.structure.terms
     assert abs(found.fit.parameters["F_r"] / car.parameters["F_r"] - 1) < 0.05

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from sprung.selection.scoring import score_terms
+from sprung.selection.scoring import most_promising
 from sprung.selection.search import ModelSearch
 from sprung.selection.sensor_errors import FAR, find_sensor_error, furthest_from_stated
 from sprung.selection.terms import TERMS
@@ -44,8 +44,6 @@ def _unexplained_drops(search: ModelSearch) -> UnlikeDrops | None:
     unlike = find_unlike_drops(search)
     if unlike is None:
         return None
-    _, scores = score_terms(search, search.open_terms(tuple(TERMS)))
-    ratios = {term: gain / (search.required(term) * search.overdispersion) for term, (gain, _) in scores.items()}
-    best = sorted((term for term in ratios if ratios[term] > 1), key=lambda term: -ratios[term])[:_TRIED]
+    best = most_promising(search, search.open_terms(tuple(TERMS)), _TRIED)
     tried = (search.refit(search.with_terms([term]), ITERATIONS, beginning_only=True) for term in best)
     return None if any(not outstanding_drops(one) for one in tried) else unlike

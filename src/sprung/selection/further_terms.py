@@ -13,7 +13,7 @@ from sprung.preprocess import FreeDecay
 from sprung.selection.contact import from_contact, without_landings
 from sprung.selection.evident_faults import with_evident_fault
 from sprung.selection.low_pass import confirm_low_pass, select_low_pass
-from sprung.selection.scoring import score_terms
+from sprung.selection.scoring import most_promising
 from sprung.selection.search import ModelSearch
 from sprung.selection.stepwise import try_likeliest, try_term
 from sprung.selection.term_fits import take_first_step
@@ -124,11 +124,8 @@ def _try_scored(search: ModelSearch, tried: Collection[str]) -> tuple[ModelSearc
     untried = _untried(search, tried)
     rivals = _rivals(untried)
     terms = [term for term in untried if term not in rivals]
-    _, scores = score_terms(search, terms)
-    ratios = {term: gain / (search.required(term) * search.overdispersion) for term, (gain, _) in scores.items()}
-    best = sorted((term for term in terms if ratios[term] > 1), key=lambda term: -ratios[term])[:_TRIED_BESIDE]
     fitted: list[str] = []
-    for term in best:
+    for term in most_promising(search, terms, _TRIED_BESIDE):
         if term in fitted:
             continue
         first = None

@@ -77,6 +77,28 @@ def score_terms(search: ModelSearch, terms: Sequence[str]) -> tuple[ModelSearch,
     return search, scores
 
 
+def most_promising(search: ModelSearch, terms: Sequence[str], most: int) -> list[str]:
+    """Return the terms whose scores promise more than is required of them.
+
+    Parameters
+    ----------
+    search
+        The present model.
+    terms
+        Open terms.
+    most
+        How many at the most.
+
+    Returns
+    -------
+    list of str
+        Best first.
+    """
+    _, scores = score_terms(search, terms)
+    ratios = {term: gain / (search.required(term) * search.overdispersion) for term, (gain, _) in scores.items()}
+    return sorted((term for term in terms if ratios[term] > 1), key=lambda term: -ratios[term])[:most]
+
+
 def _linear(search: ModelSearch, terms: Sequence[str]) -> tuple[ModelSearch, Scores]:
     """Score linear terms: all in one evaluation, and those of larger models that are worth a fit once more in their own."""
     scores = _of_fitted_model(search, terms)
