@@ -228,7 +228,8 @@ class Stepper:
     @cached_property
     def input_by_force(self) -> Array:
         """Travels and rates at the end of a step by the forces there, shape (kind, 2 row, row)."""
-        found: Array = self.by_state @ self.by_force + self.directly_by_force
+        with np.errstate(over="ignore", invalid="ignore"):  # of a vehicle that runs away within a step
+            found: Array = self.by_state @ self.by_force + self.directly_by_force
         return found
 
     def unresolved(self, trajectory: Trajectory) -> Array:
