@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from sprung.selection.error_budget import MISFIT_LEFT_BESIDE
 from sprung.selection.scoring import most_promising
 from sprung.selection.search import ModelSearch
 from sprung.selection.sensor_errors import FAR, find_sensor_error, furthest_from_stated
@@ -37,7 +38,7 @@ def with_evident_fault(search: ModelSearch) -> ModelSearch:
 
 
 def _unexplained_drops(search: ModelSearch) -> UnlikeDrops | None:
-    """Return the drops that are unlike all others, if no further term makes them like these.
+    """Return the drops that are unlike all others, if no further term makes them like these, or explains most of the misfit.
 
     Drops that are the only ones to roll stand out where what is missing shows in roll alone.
     """
@@ -45,5 +46,8 @@ def _unexplained_drops(search: ModelSearch) -> UnlikeDrops | None:
     if unlike is None:
         return None
     best = most_promising(search, search.open_terms(tuple(TERMS)), _TRIED)
-    tried = (search.refit(search.with_terms([term]), ITERATIONS, beginning_only=True) for term in best)
-    return None if any(not outstanding_drops(one) for one in tried) else unlike
+    for term in best:
+        tried = search.refit(search.with_terms([term]), ITERATIONS, beginning_only=True)
+        if not outstanding_drops(tried) or not search.leaves_misfit(tried.fit, MISFIT_LEFT_BESIDE):
+            return None
+    return unlike
