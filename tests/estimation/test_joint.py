@@ -51,16 +51,19 @@ def load_for(vehicle: Vehicle) -> Load:
     return Load(name="bags", items=items)
 
 
+def models_of(campaign: Campaign, vehicle: Vehicle) -> dict[str, LinearModel]:
+    """Return the equations of motion of a vehicle with each load of a campaign."""
+    elements, names = linear_elements(vehicle.tracks), tuple(vehicle.parameters)
+    return {load.name: LinearModel.of(elements + load.elements(), names) for load in campaign.loads}
+
+
 def fit(
     campaign: Campaign, vehicle: Vehicle, start: Mapping[str, float] | None = None
 ) -> tuple[FitStatistics, dict[str, Estimate]]:
     known = dict(campaign.known)
     if campaign.wheelbase is not None:
         known["wheelbase"] = campaign.wheelbase
-    elements = linear_elements(vehicle.tracks)
-    names = tuple(vehicle.parameters)
-    models = {load.name: LinearModel.of(elements + load.elements(), names) for load in campaign.loads}
-    found = fit_jointly(prepare(campaign).decays, models, campaign.sensors, known, start=start)
+    found = fit_jointly(prepare(campaign).decays, models_of(campaign, vehicle), campaign.sensors, known, start=start)
     return found, to_estimates(found, known)
 
 
@@ -309,8 +312,7 @@ def test_what_a_fit_has_still_to_gain_contradicts_no_statement() -> None:
     known = {"total_mass": KnownValue(TABLE_1_CAR.total_mass, 2.0), "k_sf": KnownValue(TABLE_1_CAR.k_sf, 50.0)}
     campaign = simulate(TABLE_1_CAR, loads=[load_for(TABLE_1_CAR)], noise=0.02, seed=16, known=known)
     start = TABLE_1_CAR.parameters | {"k_tf": 1.01 * TABLE_1_CAR.k_tf, "I_yy": 1.01 * TABLE_1_CAR.I_yy}
-    elements, names = linear_elements(TABLE_1_CAR.tracks), tuple(start)
-    models = {load.name: LinearModel.of(elements + load.elements(), names) for load in campaign.loads}
+    models = models_of(campaign, TABLE_1_CAR)
     stopped = fit_linear(prepare(campaign).decays, models, campaign.sensors, campaign.known, start=start, most=0)
     assert stopped.remaining_gain > 100
     conflicts = stopped.problem.conflicts(stopped.iterate, 1.0)

@@ -5,11 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 
 from sprung.selection.error_budget import MISFIT_LEFT_BESIDE
+from sprung.selection.ordinary_vehicle import ITERATIONS
 from sprung.selection.scoring import most_promising
 from sprung.selection.search import ModelSearch
 from sprung.selection.sensor_errors import FAR, find_sensor_error, furthest_from_stated
 from sprung.selection.terms import TERMS
-from sprung.selection.unlike_drops import ITERATIONS, UnlikeDrops, find_unlike_drops, outstanding_drops
+from sprung.selection.unlike_drops import UnlikeDrops, find_unlike_drops, outstanding_drops
 
 _TRIED = 2
 """Terms that may explain why drops stand out: the best by their scores."""
@@ -45,8 +46,7 @@ def _unexplained_drops(search: ModelSearch) -> UnlikeDrops | None:
     unlike = find_unlike_drops(search)
     if unlike is None:
         return None
-    best = most_promising(search, search.open_terms(tuple(TERMS)), _TRIED)
-    for term in best:
+    for term in most_promising(search, search.open_terms(tuple(TERMS)), _TRIED):
         tried = search.refit(search.with_terms([term]), ITERATIONS, beginning_only=True)
         if not outstanding_drops(tried) or not search.leaves_misfit(tried.fit, MISFIT_LEFT_BESIDE):
             return None

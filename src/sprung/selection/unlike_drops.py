@@ -24,7 +24,7 @@ _MOST = 0.25
 _LEFT = 0.5
 """Part of their model error that the other drops may leave once these are left out, or have another load."""
 
-ITERATIONS = 22
+_ITERATIONS = 22
 """Of the fits that confirm it, at the most."""
 
 
@@ -70,11 +70,11 @@ def find_unlike_drops(search: ModelSearch) -> UnlikeDrops | None:
         other = dict(zip(loads, loads[::-1], strict=True))
         changed = {decays[drop].file: other[decays[drop].load] for drop in unlike}
         relabelled = [replace(decay, load=changed.get(decay.file, decay.load)) for decay in decays]
-        exchanged = replace(search, decays=relabelled).refit(search.structure, ITERATIONS, beginning_only=True)
+        exchanged = replace(search, decays=relabelled).refit(search.structure, _ITERATIONS, beginning_only=True)
         if not outstanding_drops(exchanged) and _part_left(search, exchanged, kept, kept) < _LEFT:
             return UnlikeDrops(names, changed)
     without = replace(search, decays=[decays[drop] for drop in kept]).refit(
-        search.structure, ITERATIONS, beginning_only=True, states=search.fit.states[kept]
+        search.structure, _ITERATIONS, beginning_only=True, states=search.fit.states[kept]
     )
     is_confirmed = _part_left(search, without, kept, range(len(kept))) < _LEFT
     return UnlikeDrops(names, {}) if is_confirmed else None
