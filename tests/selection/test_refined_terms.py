@@ -11,7 +11,7 @@ from sprung.errors import InputError
 from sprung.estimation import fit_linear
 from sprung.preprocess import prepare
 from sprung.selection import ModelSearch, choose_structure
-from sprung.selection.backward_elimination import _with_held_factors, leave_out_refused
+from sprung.selection.backward_elimination import hold_undetermined, leave_out_refused
 from sprung.selection.terms import TERMS
 from sprung.simulation import simulate
 from sprung.vehicle import REFINED, TABLE_1_CAR, Vehicle
@@ -23,6 +23,9 @@ BALLAST = {
         {"mass": 60.0, "position": (-2.2, -0.3, 0.6), "inertia": (2.0, 3.0)},
     ],
 }
+
+PASSES = (("fl", "fr", "rl", "rr"), ("fl", "rl"), ("fr", "rr"))
+"""Wheels that run over the bump in each pass."""
 
 
 def test_one_without_the_other_is_refused() -> None:
@@ -53,15 +56,38 @@ def test_what_refines_a_refused_term_goes_with_it() -> None:
     assert leave_out_refused(search).selected == []
 
 
-def test_undetermined_factors_are_held_once() -> None:
+def test_undetermined_parts_are_held_once() -> None:
     """Where a model leaves so much that they stay undetermined, the term is left out next: the search comes to an end."""
     campaign = simulate(TABLE_1_CAR, rate=250.0, noise=0.02, seed=1)
-    structure = choose_structure(campaign).with_terms(("damper-curve", "rebound-knee"))
-    held = _with_held_factors(structure, "rebound-knee", ["b_kr", "b_qr"])
+    plain, decays = choose_structure(campaign), prepare(campaign).decays
+    fit = fit_linear(decays, plain.linear_models, plain.sensors, plain.known)
+    search = ModelSearch(plain, fit, decays)
+    search = replace(search, structure=plain.with_terms(("damper-curve", "rebound-knee")))
+    held = hold_undetermined(search, "rebound-knee", ["b_kr", "b_qr"])
     assert held is not None
     assert {*held.usual} == {"b_kr", "b_qr"}
-    assert _with_held_factors(held, "rebound-knee", ["b_kr"]) is None
-    assert _with_held_factors(held, "rebound-knee", ["b_kf", "b_kr"]) is not None
+    assert hold_undetermined(replace(search, structure=held), "rebound-knee", ["b_kr"]) is None
+    assert hold_undetermined(replace(search, structure=held), "rebound-knee", ["b_kf", "b_kr"]) is not None
+    knee = hold_undetermined(search, "damper-curve", ["v_kf", "q_f"])
+    assert knee is not None
+    assert knee.usual["q_f"].value == 1.0
+    assert hold_undetermined(search, "damper-curve", ["v_kf", "v_kr", "q_f", "q_r"]) is None
+
+
+@pytest.mark.slow
+def test_a_knee_that_one_axle_does_not_reach_is_not_determined() -> None:
+    """Nothing else is lost by it: the front wheels of a slow pass have come to rest when the rear ones leave the bump."""
+    car = TABLE_1_CAR.with_values(v_kf=0.25, q_f=0.3, v_kr=0.05, q_r=0.3)
+    drops = [{"wheels": list(wheels), "excitation": "pass", "speed": 4.0} for wheels in PASSES]
+    result = sprung.identify(simulate(car, drops=drops, noise=0.01, seed=1, known={"total_mass": car.total_mass}))
+    assert result.fit.model == ("damper-curve",)
+    assert result.verdict.state == "doubtful"
+    assert result.verdict.reasons == ("these drops do not determine v_kf, q_f",)
+    for name in (*TABLE_1_CAR.parameters, "v_kr", "q_r"):
+        estimate = result.parameters[name]
+        assert estimate.value is not None
+        assert estimate.std is not None
+        assert abs(estimate.value - car.parameters[name]) < 4 * estimate.std, name
 
 
 @pytest.mark.parametrize(

@@ -114,10 +114,13 @@ class UsualValue(NamedTuple):
         SI.
     spread
         Factor by which one standard deviation lies above or below it.
+    is_knowledge
+        Whether it counts in the uncertainty. One that does not only keeps the fit where the records say nothing.
     """
 
     value: float
     spread: float
+    is_knowledge: bool = True
 
 
 def scaling_direction(names: Sequence[str], values: Real, slopes: Real) -> Real:
@@ -171,6 +174,11 @@ class PriorsAndConstraints:
     def usual_rows(self) -> Real:
         """Derivatives of the usual values' residuals, in standard deviations, shape (value, coordinate)."""
         return self._usual[1] if self.usual else np.zeros((0, len(self.coordinates.names)))
+
+    @property
+    def is_knowledge(self) -> NDArray[np.bool_]:
+        """Whether each usual value counts in the uncertainty, shape (value,)."""
+        return np.array([usual.is_knowledge for usual in self.usual.values()], dtype=bool)
 
     @cached_property
     def _chosen(self) -> dict[bool, tuple[tuple[str, ...], Real, Real]]:

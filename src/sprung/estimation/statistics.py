@@ -265,12 +265,14 @@ def _directions(fit: FitResult, inflation: float) -> tuple[Real, Real]:
     """Return the information that is there, and its directions in the coordinates; (direction,), (parameter, direction).
 
     What noise alone adds is subtracted, and what is only rounding beside the largest information counts as none. Usual values
-    of some parameters are none of the scale: those of a friction, say, would be a weighing that nobody did.
+    of some parameters are none of the scale: those of a friction, say, would be a weighing that nobody did. What only held a
+    parameter is none at all.
     """
     problem, optimum = fit.problem, fit.iterate
     information, _, null_space = problem.system(optimum, inflation)
     usual = problem.priors.usual_rows
-    usual, beside = usual @ null_space, per_total_mass(fit, usual) @ null_space
+    known = problem.priors.is_knowledge
+    usual, beside = usual @ null_space, per_total_mass(fit, usual[known]) @ null_space
     information = information + beside.T @ beside - usual.T @ usual
     eigenvalues, vectors = np.linalg.eigh(information)
     rounding = RANK * eigenvalues.max(initial=0.0)

@@ -14,7 +14,7 @@ from sprung.selection.terms import TERMS
 from sprung.vehicle import NEUTRAL, PARAMETERS
 
 _HELD = 1.3
-"""Factor within which a factor is held near one that the recordings do not determine."""
+"""Factor within which a part of a term is held near its usual value that the recordings do not determine."""
 
 
 def needed_terms(search: ModelSearch) -> dict[str, float]:
@@ -134,7 +134,7 @@ def leave_out_unneeded(
             if not last:
                 return tried, gains
             least = min(last, key=missed.__getitem__)
-            if (held := _with_held_factors(tried.structure, least, undetermined[least])) is not None:
+            if (held := hold_undetermined(tried, least, undetermined[least])) is not None:
                 tried = tried.refit(held)
                 continue
         tried = tried.recorded({least: gains[least]}, True, False, against[least])
@@ -158,17 +158,35 @@ def _back_to(before: ModelSearch, tried: ModelSearch, term: str) -> ModelSearch:
     return again if again.gain_over(back) > before.required_of_switch else back
 
 
-def _with_held_factors(structure: ModelStructure, term: str, undetermined: Sequence[str]) -> ModelStructure | None:
-    """Return the structure with undetermined factors of a term held near one; None where others are, or all of the term's.
+def hold_undetermined(search: ModelSearch, term: str, undetermined: Sequence[str]) -> ModelStructure | None:
+    """Return the structure with what the recordings do not determine of a term held near where it is nothing.
 
-    The recordings may show it at one of the axles only. None also where they are held already: in a fit that leaves much, all
-    that is known counts little beside it.
+    They may show it at one of the axles only: at the other one dampers may never reach their knee.
+
+    Parameters
+    ----------
+    search
+        A model and its fit.
+    term
+        Of the model.
+    undetermined
+        Its parameters that are not determined.
+
+    Returns
+    -------
+    ModelStructure or None
+        None where these are all parameters of the term, or one of them is neither a factor nor without a value where the term
+        is nothing. None also where they are held already: in a fit that leaves much, all that is known counts little beside it.
     """
-    is_whole = {*undetermined} == {*TERMS[term].parameters(structure.tracks, structure.layout)}
-    is_held = {*undetermined} <= {*structure.usual}
-    if is_whole or is_held or any(NEUTRAL.get(name) != 1.0 for name in undetermined):
+    structure, row = search.structure, TERMS[term]
+    values = {name: 1.0 for name in undetermined if NEUTRAL.get(name) == 1.0}
+    if row.undefined is not None:
+        values |= row.undefined(search.fit.parameters, structure)
+    is_whole = {*undetermined} == {*row.parameters(structure.tracks, structure.layout)}
+    is_held = all(name in structure.usual and not structure.usual[name].is_knowledge for name in undetermined)
+    if is_whole or is_held or not {*undetermined} <= {*values}:
         return None
-    held = dict.fromkeys(undetermined, UsualValue(1.0, _HELD))
+    held = {name: UsualValue(values[name], _HELD, is_knowledge=False) for name in undetermined}
     return replace(structure, usual={**structure.usual, **held})
 
 

@@ -7,11 +7,11 @@ priors, so that a term of which the records say little keeps the size that it us
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from sprung.progress import Step
-from sprung.selection.backward_elimination import leave_out_unneeded
+from sprung.selection.backward_elimination import hold_undetermined, leave_out_unneeded
 from sprung.selection.contact import from_contact
 from sprung.selection.error_budget import MISFIT_LEFT
 from sprung.selection.evident_faults import with_evident_fault
@@ -178,6 +178,9 @@ def _without_unneeded(search: ModelSearch) -> ModelSearch:
     while True:
         against = {term: search.veto(term) for term in search.selected}
         gains = {term: search.wald_gain(term) for term in search.selected}
+        if (held := _with_held_parts(search, gains)) is not None:
+            search = search.refit(held, ITERATIONS, beginning_only=True)
+            continue
         unneeded = [term for term in search.selected if against[term]]
         little: list[str] = []
         for term in sorted(gains, key=lambda term: gains[term] / search.required(term)):
@@ -191,3 +194,13 @@ def _without_unneeded(search: ModelSearch) -> ModelSearch:
         for term in unneeded:
             search = search.recorded({term: gains[term]}, True, False, against[term])
         search = search.refit(search.without(*unneeded), ITERATIONS, beginning_only=True)
+
+
+def _with_held_parts(search: ModelSearch, gains: Mapping[str, float]) -> ModelStructure | None:
+    """Return the structure with parts held that the recordings do not determine of terms that are missed; None without any."""
+    for term, gain in gains.items():
+        undetermined = search.undetermined(term) if gain > search.required(term) else []
+        held = hold_undetermined(search, term, undetermined) if undetermined else None
+        if held is not None:
+            return held
+    return None

@@ -174,7 +174,7 @@ def held_sizes(structure: ModelStructure, values: Mapping[str, float]) -> dict[s
     """
     held = tuple(TERMS[term].held for term in structure.terms if TERMS[term].held)
     usual = usual_sizes(structure, values)
-    return {name: UsualValue(value, _HELD) for name, (value, _) in usual.items() if name.startswith(held)}
+    return {name: UsualValue(size.value, _HELD) for name, size in usual.items() if name.startswith(held)}
 
 
 def fit_from_ordinary_vehicle(search: ModelSearch, structure: ModelStructure) -> ModelSearch:
