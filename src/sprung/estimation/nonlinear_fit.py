@@ -129,7 +129,7 @@ def fit_nonlinear(
         problem = _problem(objective, known, values, usual)
         damping = _FAR if is_far else CLOSE_BY
         found = problem.maximise(problem.priors.nearest(values), None, tolerance, damping, most, cautious=is_far)
-        if part is not beginnings and most > 1:  # beginnings only compare models, as a single step does
+        if most > 1:  # a single step only compares models
             found = go_on_with_likelier_states(problem, objective, found, tolerance, most)
         states, steps = found.point.at.states, steps + found.steps
         values = dict(zip(problem.priors.coordinates.names, found.point.at.values.tolist(), strict=True))
