@@ -11,7 +11,7 @@ import pytest
 import sprung
 from sprung.errors import InputError
 from sprung.uncertainty import KnownValue
-from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR
+from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, Item, Load
 
 DATA = Path(__file__).parents[1] / "data"
 
@@ -188,3 +188,14 @@ def test_every_channel_of_a_correlation_has_ones_on_its_diagonal(sedan: sprung.R
     np.testing.assert_allclose(np.diag(matrix), 1.0)
     np.testing.assert_allclose(matrix, matrix.T, atol=1e-12)
     assert np.abs(matrix).max() <= 1 + 1e-12
+
+
+def test_a_load_that_no_drop_has_adds_nothing() -> None:
+    """People on seats who took part in no drop have no frequency that any recording tells."""
+    campaign = sprung.simulate(
+        TABLE_1_CAR, rate=250.0, noise=0.02, seed=1, known={"total_mass": TABLE_1_CAR.total_mass}
+    )
+    driver = Load(name="driver", items=(Item(mass=75.0, position=(-1.2, 0.35, 0.9), on="seat"),))
+    result = sprung.identify(replace(campaign, loads=(*campaign.loads, driver)))
+    assert result.verdict.state == "accept"
+    assert "w_l" not in result.parameters

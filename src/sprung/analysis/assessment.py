@@ -58,7 +58,9 @@ def assess(run: Analysis, progress: Progress) -> Analysis:
     run = _with_drifts(run)
     campaign, structure, optimum = run.campaign, run.model.structure, run.fit
     statistics, fit = run.uncertainty, run.uncertainty.of_vehicle
-    decays, suspected = run.decays, run.suspected
+    decays = run.decays
+    doubts = tuple(one.doubt for one in run.corrected if one.doubt is not None)
+    suspected = (*run.suspected, *doubts)
     progress(Step("judging the fit: each drop predicted by the others"))
     channels = tuple(sensor.channel for sensor in campaign.sensors)
     looked_at = check_prepared(campaign, run.prepared._replace(decays=decays))
@@ -69,7 +71,7 @@ def assess(run: Analysis, progress: Progress) -> Analysis:
     motions = body_motions(optimum, decays, fitted, campaign.sensors)
     validated = cross_validate_drops(optimum, fit, decays, channels, motions)
     contradicting = sum(any(fault.code in CONTRADICTING for fault in faults) for _, faults in run.prepared.left_out)
-    reasons = [*(fault.what for fault in suspected), *_unexplained_beginning(run)]
+    reasons = [*(f"{fault.where}: {fault.what}" for fault in suspected), *_unexplained_beginning(run)]
     refuting = [fault.what for fault in run.refuting]
     verdict = decide_verdict(fit, misfit, estimates, channels, reasons, validated, contradicting, refuting)
     rejected = verdict.state == "reject"

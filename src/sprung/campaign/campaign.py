@@ -204,6 +204,12 @@ class Campaign:
                 return load
         raise UnknownNameError(name, [load.name for load in self.loads])
 
+    @property
+    def with_used_loads(self) -> Campaign:
+        """The same without loads that no drop has: recordings tell nothing of them."""
+        used = {EMPTY.name, *(drop.load for drop in self.drops)}
+        return replace(self, loads=tuple(load for load in self.loads if load.name in used))
+
 
 def _as_record(given: object, kind: Callable[..., object], problems: Problems) -> object:
     """Return a record that was given by its keys, as a campaign file holds them; others as they are."""

@@ -68,7 +68,7 @@ def consistency_of(campaign: Campaign, decays: Sequence[FreeDecay], fit: FitResu
     together = (
         corners is not None and corners.is_relevant and corners.gain > SIGNIFICANT and corners.raw_gain > required
     )
-    if (gain > required and gain > SIGNIFICANT * correlation) or together or is_far_off:
+    if (gain > required and gain > SIGNIFICANT * correlation) or together or is_far_off or _is_statement_missed(fit):
         return "inconsistent"
     stands_out = fit.disagreement > _DISAGREEMENT and _one_drop_stands_out(fit, correlation)
     return "inconsistent" if stands_out else "consistent"
@@ -116,6 +116,12 @@ def _scores(
         score_corners(decays, fit, campaign.sensors),
     )
     return (scores if corners is None else (*scores, *corners.single())), corners
+
+
+def _is_statement_missed(fit: FitResult) -> bool:
+    """Whether the fit misses a known quantity by more than chance, however little that leaves in the residuals."""
+    missed = fit.problem.conflicts(fit.iterate, fit.overdispersion)
+    return max((size**2 for size in missed.values()), default=0.0) > SIGNIFICANT
 
 
 def _one_drop_stands_out(fit: FitResult, correlation: float) -> bool:

@@ -57,6 +57,8 @@ class Hypothesis:
         Gain in twice the log-likelihood that it needs by the error budget.
     is_refuting
         Whether no vehicle recorded all of this if it holds, whatever terms its model has.
+    doubt
+        What may be wrong instead, where nothing tells which it is, and what follows from that; None where nothing is.
     """
 
     fault: Fault
@@ -74,6 +76,7 @@ class Hypothesis:
     is_gross: bool = False
     required: float = SIGNIFICANT
     is_refuting: bool = False
+    doubt: Fault | None = None
 
     @property
     def is_explained(self) -> bool:

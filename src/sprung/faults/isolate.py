@@ -16,7 +16,7 @@ from sprung.faults.campaign import (
     several_vehicles,
     torsion_test,
 )
-from sprung.faults.campaign.known_quantity import known_quantities
+from sprung.faults.campaign.known_quantity import known_quantities, none_of, restated
 from sprung.faults.campaign.load_frame import load_frames
 from sprung.faults.candidate_fit import CandidateFit
 from sprung.faults.channel_deletion import ChannelDeletion
@@ -36,7 +36,7 @@ _RIVALS = 0.9
 """Share of the largest possible gain by leaving out a part, from which that part is examined although another one explains
 everything."""
 
-_MOST_PARTS, _MOST_FITS, _MOST_STATEMENTS, _MOST_FAULTS = 3, 3, 2, 3
+_MOST_PARTS, _MOST_FITS, _MOST_STATEMENTS, _MOST_FAULTS = 3, 3, 3, 3
 """Parts that are left out by a fit, fits of hypotheses and of statements for each fault, and faults of a campaign."""
 
 _WHOLLY = 0.1
@@ -186,28 +186,47 @@ def _groups(
 
 
 def _wrong_statement(base: CandidateFit) -> tuple[Hypothesis | None, int]:
-    """Return the one statement about loads or masses that explains the recordings wholly, being otherwise."""
+    """Return the one statement about loads or masses that explains the recordings wholly, being otherwise.
+
+    Where one of several known quantities may be wrong, none of them is used.
+    """
     promising = sorted(
         (
             hypothesis
             for hypothesis in (*load_frames(base), *known_quantities(base))
-            if hypothesis.candidate.misfit <= SHARE * base.misfit
-            and base.table.cost - hypothesis.table.cost > SIGNIFICANT
+            if _leaves_little(base, hypothesis, SHARE) and base.table.cost - hypothesis.table.cost > SIGNIFICANT
         ),
         key=lambda hypothesis: hypothesis.score(),
-    )
+    )[:_MOST_STATEMENTS]
+    confirmed = sorted(_confirmed_wholly(base, promising), key=lambda hypothesis: hypothesis.score())
+    if not confirmed:
+        return None, len(promising)
+    best, alike = confirmed[0], SIGNIFICANT * confirmed[0].candidate.fit.overdispersion
+    rivals = [one for one in confirmed[1:] if one.free <= best.free and one.score() - best.score() < alike]
+    if not rivals:
+        return restated(base, best), len(promising)
+    none = none_of(base, [best, *rivals])
+    found = _confirmed_wholly(base, [none] if none is not None else [])
+    return (restated(base, found[0]) if found else None), len(promising) + 1
+
+
+def _confirmed_wholly(base: CandidateFit, hypotheses: Sequence[Hypothesis]) -> list[Hypothesis]:
+    """Return those of some hypotheses that explain the recordings wholly, by their fits."""
     confirmed: list[Hypothesis] = []
-    for hypothesis in promising[:_MOST_STATEMENTS]:
+    for hypothesis in hypotheses:
         other, _ = hypothesis.confirm(base)
         gain = 0.0 if other is None else base.table.cost - other.table.cost
-        if other is None or other.candidate.misfit > _WHOLLY * base.misfit:
+        if other is None or not _leaves_little(base, other, _WHOLLY):
             continue
         if gain > SIGNIFICANT * other.candidate.fit.overdispersion:
             confirmed.append(other)
-    confirmed.sort(key=lambda hypothesis: hypothesis.score())
-    alike = SIGNIFICANT * confirmed[0].candidate.fit.overdispersion if confirmed else 0.0
-    is_ambiguous = len(confirmed) > 1 and confirmed[1].score() - confirmed[0].score() < alike
-    return (confirmed[0] if confirmed and not is_ambiguous else None), len(promising[:_MOST_STATEMENTS])
+    return confirmed
+
+
+def _leaves_little(base: CandidateFit, hypothesis: Hypothesis, part: float) -> bool:
+    """Whether a hypothesis leaves at most a part of the misfit; noise, where nothing else is left without it."""
+    left = hypothesis.candidate
+    return left.is_explained if base.is_explained else left.misfit <= part * base.misfit
 
 
 def _by_scores(base: CandidateFit) -> list[Hypothesis]:
@@ -389,5 +408,12 @@ def _with_rival(base: CandidateFit, best: Hypothesis, hypotheses: Sequence[Hypot
     if not rivals:
         return best
     rival = min(rivals, key=lambda hypothesis: hypothesis.score(overdispersion))
-    fault = replace(best.fault, what=f"{best.fault.what}; or {rival.fault.where}: {rival.fault.what}")
+    what = f"{_without_remedy(best)}; or {rival.fault.where}: {_without_remedy(rival)}"
+    fault = replace(best.fault, what=f"{what}. The recordings do not tell which of the two it is; nothing was changed")
     return Hypothesis(fault, "named", Correction(), best.table, best.candidate, best.free, is_specific=False)
+
+
+def _without_remedy(hypothesis: Hypothesis) -> str:
+    """Return what is wrong in words, without what is done about it, which comes last."""
+    what, done = hypothesis.fault.what, hypothesis.remedy != "named"
+    return what.rpartition("; ")[0] if done and "; " in what else what

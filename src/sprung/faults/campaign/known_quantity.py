@@ -1,8 +1,12 @@
-"""A quantity stated as known that the recordings contradict."""
+"""Quantities stated as known that the recordings contradict.
+
+Free vibrations show ratios of masses and rates, but no scale of them: of two statements that contradict each other either one
+may be wrong. An error that has no number of its own, two exchanged masses, is likelier than one that may have any size.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import replace
 
 from sprung.campaign import Campaign
@@ -13,12 +17,11 @@ from sprung.faults.hypothesis import Hypothesis
 from sprung.uncertainty import KnownValue
 from sprung.vehicle import DERIVED, PARAMETERS
 
-_LOAD_INCLUDED = 0.02
-"""Relative distance from the mass of the vehicle with a load, within which a mass is taken to include the load."""
+_PLACE = "known."
 
 
 def known_quantities(base: CandidateFit) -> Iterator[Hypothesis]:
-    """Exchange the masses of the axles, and leave out each known quantity."""
+    """Exchange the masses of the axles, take each load out of the total mass, and leave out each known quantity."""
     known = base.campaign.known
     front, rear = (known.get(name) for name in ("front_axle_mass", "rear_axle_mass"))
     if front is not None and rear is not None:
@@ -26,15 +29,78 @@ def known_quantities(base: CandidateFit) -> Iterator[Hypothesis]:
             f"the masses of the axles are exchanged: {rear.value:g} kg in front and {front.value:g} kg behind fit the "
             "recordings; corrected"
         )
-        where = "known.front_axle_mass, known.rear_axle_mass"
+        where = f"{_PLACE}front_axle_mass, {_PLACE}rear_axle_mass"
         fault = Fault("known", where, what, "Exchange the two in the campaign file.")
         yield _stating(base, fault, {**known, "front_axle_mass": rear, "rear_axle_mass": front})
-    for name, stated in known.items():
+    yield from _with_a_load_in_it(base)
+    for name in known:
         if name in PARAMETERS and name not in base.structure.names:
             continue  # of a term that the model has not yet
-        rest = {key: value for key, value in known.items() if key != name}
-        hypothesis = _stating(base, Fault("known", f"known.{name}", "", ""), rest)
-        yield replace(hypothesis, fault=_contradicted(name, stated, hypothesis.candidate))
+        yield _without(base, [name])
+
+
+def _with_a_load_in_it(base: CandidateFit) -> Iterator[Hypothesis]:
+    known = base.campaign.known
+    total = known.get("total_mass")
+    for load in base.campaign.loads if total is not None else ():
+        mass = load.total_mass(base.campaign.layout)
+        if total is None or not 0 < mass < total.value:
+            continue
+        what = (
+            f"the recordings contradict total_mass = {total.value:g} kg, and the difference is the mass of load '{load.name}', "
+            "which it must not include; corrected"
+        )
+        do = "Correct total_mass under [known] in the campaign file: it is the mass of the empty vehicle."
+        fault = Fault("known", f"{_PLACE}total_mass", what, do)
+        empty = replace(total, value=total.value - mass)
+        yield _stating(base, fault, {**known, "total_mass": empty})
+
+
+def none_of(base: CandidateFit, rivals: Collection[Hypothesis]) -> Hypothesis | None:
+    """Leave out all known quantities of which any one may be wrong.
+
+    Parameters
+    ----------
+    base
+        The fit of the campaign as it is.
+    rivals
+        What explains the recordings equally well.
+
+    Returns
+    -------
+    Hypothesis or None
+        None where something else is among them.
+    """
+    places = dict.fromkeys(place for one in rivals for place in one.fault.where.split(", "))
+    if not all(place.startswith(_PLACE) for place in places):
+        return None
+    return _without(base, [place.removeprefix(_PLACE) for place in places])
+
+
+def restated(base: CandidateFit, hypothesis: Hypothesis) -> Hypothesis:
+    """Return a hypothesis about known quantities with what its fit says of them.
+
+    Parameters
+    ----------
+    base
+        The fit of the campaign as it is.
+    hypothesis
+        Once it is confirmed.
+    """
+    known = base.campaign.known
+    missing = [name for name in known if name not in hypothesis.candidate.campaign.known]
+    if not missing:
+        return hypothesis
+    fault = _contradicted({name: known[name] for name in missing}, hypothesis.candidate)
+    doubt = _resting_on_load(missing[0], known[missing[0]], hypothesis.candidate) if len(missing) == 1 else None
+    return replace(hypothesis, fault=fault, doubt=doubt)
+
+
+def _without(base: CandidateFit, names: Collection[str]) -> Hypothesis:
+    known = base.campaign.known
+    rest = {name: value for name, value in known.items() if name not in names}
+    fault = Fault("known", ", ".join(f"{_PLACE}{name}" for name in names), "", "")
+    return replace(_stating(base, fault, rest), free=len(names))
 
 
 def _stating(base: CandidateFit, fault: Fault, known: Mapping[str, KnownValue]) -> Hypothesis:
@@ -42,22 +108,54 @@ def _stating(base: CandidateFit, fault: Fault, known: Mapping[str, KnownValue]) 
         return replace(campaign, known=known)
 
     correction = Correction(description=described)
-    candidate = base.step(correction, base.fit)
+    # A statement may be far off: one step does not tell what it explains.
+    candidate = base.refine(correction, base.fit)
     return Hypothesis(fault, "corrected", correction, candidate.table, candidate)
 
 
-def _contradicted(name: str, stated: KnownValue, candidate: CandidateFit) -> Fault:
+def _contradicted(stated: Mapping[str, KnownValue], candidate: CandidateFit) -> Fault:
+    places = ", ".join(f"{_PLACE}{name}" for name in stated)
+    values = [f"{name} = {value.value:g} {_unit(name)}" for name, value in stated.items()]
+    states = "or state its uncertainty, { value = ..., std = ... }."
+    if len(stated) > 1:
+        listed = f"{', '.join(values[:-1])} and {values[-1]}"
+        what = (
+            f"{listed} contradict each other, and the recordings do not tell which of them is wrong; none of them was used, "
+            "so that nothing may be left to tell masses and rates"
+        )
+        return Fault("known", places, what, f"Correct the wrong one under [known] in the campaign file, {states}")
+    (name,) = stated
+    found = f"{_estimate(name, candidate):.4g} {_unit(name)}"
+    what = f"the recordings contradict {values[0]}; without it they give {found}. It was not used"
+    return Fault("known", places, what, f"Correct {name} under [known] in the campaign file, {states}")
+
+
+def _resting_on_load(name: str, stated: KnownValue, candidate: CandidateFit) -> Fault | None:
+    """Return what else may be wrong where only loads are left to tell masses and rates; None where something else is."""
+    campaign = candidate.campaign
+    loads = {drop.load: campaign.load(drop.load).total_mass(campaign.layout) for drop in campaign.drops}
+    loaded = [load for load, mass in loads.items() if mass > 0]
+    if not loaded or not _tells_scale(name) or any(map(_tells_scale, campaign.known)):
+        return None
+    listed = ", ".join(f"load '{load}'" for load in loaded)
+    ratio = stated.value / _estimate(name, candidate)
+    what = (
+        f"masses and rates rest on its mass alone, as {name} = {stated.value:g} {_unit(name)} contradicts it: if {name} is "
+        f"right and the mass of the load is wrong, all masses and rates are {ratio:.3g} times as large"
+    )
+    return Fault(
+        "known", listed, what, "Weigh the load and the vehicle again, and correct what was wrong in the campaign file."
+    )
+
+
+def _tells_scale(name: str) -> bool:
+    return PARAMETERS[name].scales if name in PARAMETERS else name.endswith("_mass")
+
+
+def _estimate(name: str, candidate: CandidateFit) -> float:
     parameters = candidate.fit.parameters
-    estimate = DERIVED[name].value(parameters) if name in DERIVED else parameters[name]
-    unit = PARAMETERS[name].unit if name in PARAMETERS else "kg"
-    what = f"the recordings contradict {name} = {stated.value:g} {unit}; without it they give {estimate:.4g} {unit}"
-    loads = [
-        load.name
-        for load in candidate.campaign.loads
-        if (mass := load.total_mass(candidate.campaign.layout))
-        and abs(stated.value - mass - estimate) < _LOAD_INCLUDED * estimate
-    ]
-    if name.endswith("_mass") and loads:
-        what += f", and the difference is the mass of load '{loads[0]}', which it must not include"
-    do = f"Correct {name} under [known] in the campaign file, or state its uncertainty, {{ value = ..., std = ... }}."
-    return Fault("known", f"known.{name}", f"{what}. It was not used", do)
+    return DERIVED[name].value(parameters) if name in DERIVED else parameters[name]
+
+
+def _unit(name: str) -> str:
+    return PARAMETERS[name].unit if name in PARAMETERS else "kg"
