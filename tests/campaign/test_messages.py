@@ -153,6 +153,15 @@ def test_a_fault_of_the_campaign_file_is_said_once_and_exactly(
     assert len(error.value.problems) == 1  # no consequences beside the cause
 
 
+@pytest.mark.parametrize(
+    ("model", "zeros"), [("pitch-plane", "y = 0"), ("roll-plane", "x = 0"), ("quarter", "x = y = 0")]
+)
+def test_a_position_that_is_missing_is_asked_for_as_the_model_has_it(folder: Folder, model: str, zeros: str) -> None:
+    path = folder(("wheelbase = 2.76", f'wheelbase = 2.76\nmodel = "{model}"'), ("position = [0.1, 0.7, 0.5]\n", ""))
+    with pytest.raises(InputError, match=rf"position = \[x, y, z\], with {zeros} where model is {model}\."):
+        read(path)
+
+
 def test_every_fault_of_every_file_is_in_one_error(folder: Folder, text: Callable[..., str]) -> None:
     path = folder(
         ("= 2.76", '= "2.76"'),
