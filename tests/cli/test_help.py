@@ -11,7 +11,8 @@ import pytest
 import typer
 
 from command_line import run
-from sprung.cli.app import ORDER, app
+from sprung.cli.app import ORDER
+from sprung.cli.program import app
 from sprung.cli.help_text import readable
 
 GROUP = typer.main.get_command(app)
