@@ -12,8 +12,8 @@ import typer
 
 from command_line import run
 from sprung.cli.app import ORDER
-from sprung.cli.program import app
 from sprung.cli.help_text import readable
+from sprung.cli.program import app
 
 GROUP = typer.main.get_command(app)
 WIDTHS = (30, 40, 60, 80, 200)

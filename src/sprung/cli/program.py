@@ -13,6 +13,8 @@ from sprung.cli.output import BAD_INPUT, DEFECT, INTERRUPTED, complain
 from sprung.cli.signals import interruption_of, report_stop
 from sprung.errors import SprungError
 
+__all__ = ["app", "run_program"]
+
 _TOO_LARGE = (
     "sprung has not enough memory for this input. Cut the recordings to a few seconds before and after each drop, lower their "
     "sampling rate to 1000 Hz, or use a machine with more memory. Nothing was written."
