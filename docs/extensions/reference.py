@@ -16,7 +16,7 @@ import typer
 from sphinx.pycode import ModuleAnalyzer
 
 import sprung
-from sprung.cli import app as commands
+from sprung.cli.program import app as commands
 from sprung.vehicle import LAYOUTS, PARAMETERS, parameters_of_term, terms_of
 
 if TYPE_CHECKING:

@@ -11,7 +11,6 @@ Examples
 from __future__ import annotations
 
 import importlib
-from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -34,6 +33,8 @@ if TYPE_CHECKING:
     from sprung.simulation import simulate
     from sprung.study import Comparison, compare, plan, validate
     from sprung.vehicle import Load, Sensor, Vehicle
+
+    __version__: str
 
 __all__ = [
     "Campaign",
@@ -61,8 +62,6 @@ __all__ = [
     "validate",
     "write",
 ]
-
-__version__ = version("sprung")
 
 _HOME = {
     "Campaign": "campaign",
@@ -99,6 +98,8 @@ def __getattr__(name: str) -> Any:
         value = getattr(importlib.import_module(f"sprung.{_HOME[name]}"), name)
     elif name in _ROOMS:
         value = importlib.import_module(f"sprung.{name}")
+    elif name == "__version__":
+        value = importlib.import_module("importlib.metadata").version("sprung")
     else:
         raise AttributeError(f"module 'sprung' has no attribute '{name}'")
     globals()[name] = value

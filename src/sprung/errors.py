@@ -7,6 +7,7 @@ the campaign, of which the rest can be used, and is reported with the result.
 from __future__ import annotations
 
 import difflib
+import re
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -209,15 +210,20 @@ def did_you_mean(word: str, allowed: Iterable[str]) -> str:
     Returns
     -------
     str
-        ``Did you mean 'wheels'?`` if one is close, otherwise the allowed words.
+        ``Did you mean 'wheels'?`` if one is close, or the one of which the word's initials are, as of "rear right" those are
+        rr; all of them if several are equally close; otherwise the allowed words.
     """
     allowed = sorted(allowed)
+    initials = "".join(part[0] for part in re.split(r"[\W_]+", word.lower()) if part)
+    if initials in allowed and len(initials) > 1:
+        return f"Did you mean '{initials}'?"
     close = difflib.get_close_matches(word.lower(), [name.lower() for name in allowed], n=_CANDIDATES, cutoff=0.6)
     if close:
         # Their order is by common letters, which does not distinguish exchanged letters from wrong ones.
-        nearest = min(close, key=lambda name: _typing_errors(word.lower(), name))
-        meant = next(name for name in allowed if name.lower() == nearest)
-        return f"Did you mean '{meant}'?"
+        errors = {name: _typing_errors(word.lower(), name) for name in close}
+        nearest = [name for name in errors if errors[name] == min(errors.values())]
+        *others, last = (f"'{name}'" for name in allowed if name.lower() in nearest)
+        return f"Did you mean {', '.join(others)} or {last}?" if others else f"Did you mean {last}?"
     return f"Allowed: {', '.join(allowed)}." if allowed else "Nothing is allowed here."
 
 

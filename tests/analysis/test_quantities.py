@@ -90,7 +90,7 @@ def test_a_campaign_survives_being_written_and_its_report_names_units(tmp_path: 
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        (('unit *= "mm"', ""), ("travel", "no unit", "a unit of displacement", 'unit = "mm"')),
+        (('unit *= "mm"', ""), ("more recordings: travel", "no unit", "a unit of displacement", 'unit = "mm"')),
         (('unit *= "mm"', 'unit = "g"'), ("unit", "'g'", "a unit of displacement")),
         (('axis *= "roll"', ""), ("axis", "angular rate")),
         (('relative_to *= "fl"', 'relative_to = "left"'), ("relative_to", "'left'", "any of fl, fr, rl, rr")),

@@ -106,7 +106,35 @@ FILE_FAULTS: dict[str, tuple[tuple[str, str], tuple[str, ...]]] = {
     "start outside": (('"one.csv"', '"one.csv"\nstart = -1'), ("drop[1].start (one.csv): found -1 s", "0 to 0.198 s")),
     "end outside": (('"one.csv"', '"one.csv"\nend = 5'), ("drop[1].end (one.csv): found 5 s", "0 to 0.198 s")),
     "decimal comma": (("= 2.76", "= 2,76"), ("line 4, column", "`wheelbase = 2,76`", "decimal point")),
-    "key twice": (("= 2.76", "= 2.76\nwheelbase = 3"), ("line 5, column", "Cannot overwrite")),
+    "key twice": (
+        ("= 2.76", "= 2.76\nwheelbase = 3"),
+        ("line 5, column", "`wheelbase = 3`, a key that its section has already", "Delete one of the two"),
+    ),
+    "key twice in a table": (
+        ("mass = 140", "mass = 140, mass = 140"),
+        ("a key that its table has already", "Delete one of the two"),
+    ),
+    "section twice": (
+        ("[known]", "[known]\n[vehicle]"),
+        ("a section that the file has already", "keys of the two into one"),
+    ),
+    "on a seat without position": (
+        ("mass = 140, position = [-1, 0, 0.5]", 'mass = 75, on = "seat"'),
+        ("load[1].items[1]", 'An item with on = "seat" needs its position = [x, y, z] too'),
+    ),
+    "place in words": (
+        ('"body_fl"\non = "body"', '"body_fl"\non = "rear right"'),
+        (
+            "sensor[1].on",
+            '"rear right"',
+            'expected one of "body", "fl", "fr", "rl", "rr", "pad fl"',
+            "Did you mean 'rr'?",
+        ),
+    ),
+    "pad without wheel": (
+        ('"body_fl"\non = "body"', '"body_fl"\non = "pad"'),
+        ("sensor[1].on", "Did you mean 'pad fl', 'pad fr', 'pad rl' or 'pad rr'?"),
+    ),
     "newer schema": (("schema = 1", "schema = 2\nfuture = 3"), ("schema 2", "Update sprung")),
     "no schema of ours": (("schema = 1", 'schema = "one"'), ("schema: found schema 'one'", "Write schema = 1")),
 }
@@ -123,6 +151,15 @@ def test_a_fault_of_the_campaign_file_is_said_once_and_exactly(
         assert word in message
     assert not any(word in message for word in JARGON)
     assert len(error.value.problems) == 1  # no consequences beside the cause
+
+
+@pytest.mark.parametrize(
+    ("model", "zeros"), [("pitch-plane", "y = 0"), ("roll-plane", "x = 0"), ("quarter", "x = y = 0")]
+)
+def test_a_position_that_is_missing_is_asked_for_as_the_model_has_it(folder: Folder, model: str, zeros: str) -> None:
+    path = folder(("wheelbase = 2.76", f'wheelbase = 2.76\nmodel = "{model}"'), ("position = [0.1, 0.7, 0.5]\n", ""))
+    with pytest.raises(InputError, match=rf"position = \[x, y, z\], with {zeros} where model is {model}\."):
+        read(path)
 
 
 def test_every_fault_of_every_file_is_in_one_error(folder: Folder, text: Callable[..., str]) -> None:

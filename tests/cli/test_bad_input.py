@@ -252,6 +252,19 @@ def test_the_output_is_a_file(folder: Folder, tmp_path: Path) -> None:
     assert (tmp_path / "results").read_text() == "mine"
 
 
+def test_an_output_that_cannot_be_written_is_refused_before_the_fit(
+    folder: Folder, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(**_: object) -> object:
+        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
+
+    monkeypatch.setattr("sprung.files.ownership.tempfile.TemporaryFile", refuse)
+    for options in ((), ("--force",)):
+        said = run("identify", folder.path, "-o", tmp_path / "results", "--json", *options)
+        assert (said.status, said.out) == (2, "")
+        assert "cannot be written to" in said.err
+
+
 def test_the_output_cannot_be_written(folder: Folder, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     real = Path.open
 

@@ -11,8 +11,9 @@ import pytest
 import typer
 
 from command_line import run
-from sprung.cli.app import ORDER, app
+from sprung.cli.app import ORDER
 from sprung.cli.help_text import readable
+from sprung.cli.program import app
 
 GROUP = typer.main.get_command(app)
 WIDTHS = (30, 40, 60, 80, 200)

@@ -68,7 +68,7 @@ def test_without_scale_and_roll_there_is_what_needs_neither() -> None:
     ("options", "message"),
     [
         (("--road", "Z"), "a class of ISO 8608"),
-        (("--speed", "2000"), "0.5 to 150 m/s"),
+        (("--speed", "2000"), "found 2000 km/h (555.556 m/s); expected 1.8 to 540 km/h (0.5 to 150 m/s)"),
         (("--seat", "here"), "such as -1.4,0.4"),
         (("--seat", "-1,0,0.5"), "cg_height in the campaign"),
         (("--load", "trailer"), "ride numbers: load"),

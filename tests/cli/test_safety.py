@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import signal
+import sys
 import time
 from collections.abc import Iterator
 from importlib import import_module
@@ -194,6 +195,24 @@ def test_a_signal_before_the_command_begins(
     monkeypatch: pytest.MonkeyPatch, number: int, status: int, word: str
 ) -> None:
     monkeypatch.setattr(import_module("sprung.cli.app").Commands, "parse_args", stopping(number))
+    assert run("schema") == Run(status, "", f"sprung was {word}.\n")
+
+
+@pytest.mark.skipif(os.name == "nt", reason="there, nothing else can catch these signals")
+@pytest.mark.parametrize(
+    ("number", "status", "word"), [(signal.SIGINT, 130, "interrupted"), (signal.SIGTERM, 143, "terminated")]
+)
+def test_a_signal_while_the_commands_are_imported(
+    monkeypatch: pytest.MonkeyPatch, number: int, status: int, word: str
+) -> None:
+    class Finder:
+        @staticmethod
+        def find_spec(name: str, *_: object) -> None:
+            if name == "sprung.cli.program":
+                signal.raise_signal(number)
+
+    monkeypatch.delitem(sys.modules, "sprung.cli.program", raising=False)
+    monkeypatch.setattr(sys, "meta_path", [Finder, *sys.meta_path])
     assert run("schema") == Run(status, "", f"sprung was {word}.\n")
 
 

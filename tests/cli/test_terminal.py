@@ -176,6 +176,17 @@ def test_too_little_memory_is_said_with_what_to_do(folder: Folder, monkeypatch: 
     assert folder.listing() == before
 
 
+@pytest.mark.skipif(os.name == "nt", reason="there, file names are in Unicode whatever the locale")
+@pytest.mark.parametrize("command", ["identify", "check"])
+def test_a_recording_whose_name_the_locale_cannot_write(folder: Folder, command: str) -> None:
+    folder.edit('"empty_bounce.csv"', '"Leer Hüpfen 日本.csv"')
+    said = process(command, folder.path, LC_ALL="C", PYTHONUTF8="0")
+    text = " ".join((said.stdout + said.stderr).decode("ascii").split())
+    assert "Traceback" not in text
+    assert "a name in the encoding of file names" in text
+    assert "PYTHONUTF8=1" in text
+
+
 @pytest.mark.slow
 def test_a_pipe_that_closes(folder: Folder) -> None:
     command = [sys.executable, "-m", "sprung", "identify", "--no-report", str(folder.path)]

@@ -385,6 +385,29 @@ def test_a_push_of_which_only_accelerations_tell_is_one_by_its_name(tmp_path: Pa
     assert [sensor.on for sensor in alone.sensors] == ["body"] * 4 + list(WHEELS)
 
 
+def test_a_pass_by_its_name_is_no_drop_though_wheels_fall_behind_the_bump(tmp_path: Path) -> None:
+    drops: list[dict[str, Any]] = [
+        {"wheels": list(WHEELS), "excitation": "pass"},
+        {"wheels": ["fl", "rl"], "excitation": "pass"},
+        {"wheels": ["fl", "fr"], "excitation": "push"},
+    ]
+    campaign = simulate(TABLE_1_CAR, drops=drops, noise=0.02, seed=1)
+    names = [sensor.channel for sensor in campaign.sensors]
+    for name, recording in zip(("empty pass", "left pass", "front push"), campaign.recordings, strict=True):
+        write_table(tmp_path / f"{name}.csv", recording.values, recording.rate, names)
+    draft = sprung.draft(tmp_path)
+    found = {drop.files[0]: (drop.excitation, drop.wheels) for drop in draft.drops}
+    assert found == {
+        "empty pass.csv": ("pass", ()),
+        "front push.csv": ("push", ("fl", "fr")),
+        "left pass.csv": ("pass", ("fl", "rl")),
+    }
+    assert any(
+        "a pass by the name of the recording, in which the accelerations show" in " ".join(drop.notes)
+        for drop in draft.drops
+    )
+
+
 def test_copies_of_what_cannot_be_read_are_not_read(tmp_path: Path) -> None:
     coordinates = let_go(SOFT, lifted(SOFT, 900.0, 0.0).tolist())
     for name in ("a.txt", "b.txt"):

@@ -4,14 +4,18 @@ from __future__ import annotations
 
 from dataclasses import replace
 from itertools import combinations
+from types import SimpleNamespace
+from typing import Any
 
+import numpy as np
 import pytest
 
 import sprung
 from sprung.campaign import Campaign
 from sprung.faults import examine
+from sprung.faults.channel.wheel import wheel
 from sprung.faults.correction import exchange_channels
-from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, WHEELS, Vehicle, Wheel
+from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, WHEELS, Sensor, Vehicle, Wheel
 
 RUBBING = Vehicle.from_parameters(TABLE_1_CAR.parameters | {"F_f": 150.0, "F_r": 200.0, "r_f": 2.5, "r_r": 2.0})
 CAMPAIGNS = {
@@ -86,3 +90,24 @@ def test_a_channel_that_shows_nothing_is_not_put_elsewhere() -> None:
             values[channel] = values[channel].mean() + 0.01 * (values[channel] - values[channel].mean())
             recordings.append(replace(one, values=values))
         assert said(campaign.with_recordings(recordings)) == []
+
+
+@pytest.mark.parametrize(
+    ("sensor", "remedy"),
+    [
+        (Sensor(channel="a", on="fl"), "Correct on = ..."),
+        (Sensor(channel="a", on="body", relative_to="fl", quantity="displacement"), "Correct relative_to = ..."),
+    ],
+)
+def test_the_remedy_names_the_key_that_is_wrong(sensor: Sensor, remedy: str) -> None:
+    prediction: Any = SimpleNamespace(
+        sensor=sensor,
+        channel=0,
+        candidate=SimpleNamespace(campaign=CAMPAIGNS["car"]),
+        row=lambda _: np.zeros(1),
+        motion=np.zeros((1, 4)),
+        residual_of=lambda predicted: predicted,
+    )
+    hypotheses = list(wheel(prediction))
+    assert len(hypotheses) == 3
+    assert all(hypothesis.fault((), ()).do.startswith(remedy) for hypothesis in hypotheses)

@@ -29,6 +29,14 @@ def contents(folder: Path) -> dict[str, bytes]:
     return {path.relative_to(folder).as_posix(): path.read_bytes() for path in files}
 
 
+@pytest.mark.skipif(
+    not Path("/proc").is_dir(), reason="there is no file system that refuses files in spite of its permissions"
+)
+def test_a_place_that_takes_no_files_is_named_before_anything_is_written() -> None:
+    (problem,) = overwriting_problems(Path("/proc/results"), ())
+    assert "a place that cannot be written to" in problem.found
+
+
 def test_own_files_are_replaced_and_others_are_refused_by_name(tmp_path: Path) -> None:
     atomic_write(tmp_path, OLD)
     atomic_write(tmp_path, NEW)  # ours, as we wrote them

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import os
 from importlib.metadata import EntryPoint
 from typing import TYPE_CHECKING
 
@@ -70,3 +71,16 @@ def test_no_claim_names_the_known_formats(tmp_path: Path) -> None:
     (tmp_path / "a.bin").write_bytes(b"\0")
     with pytest.raises(InputError, match="no known format; expected exactly one of the known formats: csv"):
         read_table(tmp_path / "a.bin")
+
+
+@pytest.mark.skipif(os.name == "nt", reason="there, every name can be written")
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("\ud800.csv", "a name in the encoding of file names, utf-8. Set the environment variable"),
+        ("a\0.csv", "null byte"),
+    ],
+)
+def test_a_name_that_no_file_can_have_is_a_fault_of_the_input(tmp_path: Path, name: str, words: str) -> None:
+    with pytest.raises(InputError, match=words):
+        read_table(tmp_path / name)

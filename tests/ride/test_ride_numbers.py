@@ -156,7 +156,7 @@ def test_transmissibility_has_its_uncertainty() -> None:
         ({"places": {"seat": (1.0,)}}, "forward of the front axle"),
         ({"places": {"seat": (-1.0, 0.0, 0.5)}}, "Leave z out"),
         ({"tracks": "alike"}, "isotropic"),
-        ({"duration": -1.0}, "positive number of seconds"),
+        ({"duration": -1800.0}, r"found -0.5 h \(-1800 s\); expected a positive duration"),
         ({"load": "trailer"}, "one of empty"),
     ],
 )

@@ -106,10 +106,14 @@ def test_empty_adds_nothing() -> None:
     [
         ({"name": "empty", "added": {"mass": 1}}, "give this load another name"),
         ({"name": "x", "added": {"mass": 1}, "items": [{"mass": 1, "on": "fl"}]}, "not both"),
-        ({"name": "x", "items": [{"mass": 1}]}, "n item needs either a position on the body or the wheel"),
+        ({"name": "x", "items": [{"mass": 1}]}, r"n item needs its position = \[x, y, z\] on the body, or the wheel"),
         (
             {"name": "x", "items": [{"mass": 1, "on": "fl", "position": [0, 0, 0]}]},
-            "n item needs either a position on the body",
+            'n item with on = "fl" sits on that wheel and has no position',
+        ),
+        (
+            {"name": "x", "items": [{"mass": 75, "on": "seat"}]},
+            r'n item with on = "seat" needs its position = \[x, y, z\] too',
         ),
         ({"name": "x", "items": [{"mass": -1, "on": "fl"}]}, "greater than 0"),
         ({"name": "x", "added": {"mass": 1, "I_zz": 2}}, "the unknown key 'I_zz'"),

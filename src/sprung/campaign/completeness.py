@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from sprung.campaign.parsing import ParsedFile
     from sprung.campaign.schema import CampaignFile
     from sprung.campaign.schema_problems import Place
+    from sprung.vehicle import VehicleModel
 
 _ITEMS = {
     ("vehicle", "wheelbase"): "wheelbase",
@@ -85,7 +86,7 @@ def find_missing_entries(parsed: ParsedFile[CampaignFile]) -> Iterator[MissingEn
             and sensor.position is None
             and not {("sensor", index, key) for key in ("position", "relative_to")} & parsed.placeholders.keys()
         ):
-            do = "A body sensor needs its position = [x, y, z]."
+            do = f"A body sensor needs its position = [x, y, z]{_zeros(file.vehicle.model)}."
             where = parsed.where("sensor", index)
             yield MissingEntry(
                 _item(("sensor", index, "position")), Problem(where, "no position", "where it sits, m", do)
@@ -111,6 +112,13 @@ def find_missing_entries(parsed: ParsedFile[CampaignFile]) -> Iterator[MissingEn
         where, do = parsed.where("vehicle", "wheelbase"), "Measure it with a tape and add wheelbase = ... to [vehicle]."
         problem = Problem(where, "nothing", "front axle to rear axle, m", do)
         yield MissingEntry(_item(("vehicle", "wheelbase")), problem, needed=False)
+
+
+def _zeros(model: VehicleModel) -> str:
+    """Return which coordinates are 0 in a part of a vehicle that does not pitch or roll."""
+    layout = LAYOUTS[model]
+    zeros = [axis for axis, turns in (("x", layout.pitches), ("y", layout.rolls)) if not turns]
+    return f", with {' = '.join((*zeros, '0'))} where model is {model}" if zeros else ""
 
 
 def _item(place: Place) -> str:

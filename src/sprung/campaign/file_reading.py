@@ -14,6 +14,7 @@ from sprung.campaign.completeness import find_missing_entries
 from sprung.campaign.drop import Drop, DropTest, unique_recording_names
 from sprung.campaign.drop_recording import assemble_recording, qualify_channels
 from sprung.campaign.parsing import ParsedFile, parse_document
+from sprung.campaign.repeated_problems import merge_repeated
 from sprung.campaign.schema import CampaignFile
 from sprung.campaign.signals import find_column
 from sprung.campaign.source_file import SourceFile
@@ -49,9 +50,8 @@ def read_campaign(
     _check_starts_and_ends(parsed, tables, problems)
     sensors = qualify_channels(parsed.file.sensor)
     drops = _recorded(parsed, sensors, tables, of_recordings, progress)
-    problems.raise_if_any()
-    if not drops:
-        unread.raise_if_any()
+    if found := tuple(problems) or (() if drops else tuple(unread)):
+        raise InputError(merge_repeated(found, {name for of_drop in tables.values() for name in of_drop}))
     _refuse_unusable([drop.recording for drop in drops.values()])
     return replace(
         stated_campaign(parsed, path, sensors),

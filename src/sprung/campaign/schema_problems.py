@@ -10,10 +10,10 @@ import json
 from typing import TYPE_CHECKING, Any
 
 from sprung.errors import Problem, did_you_mean
-from sprung.vehicle import UNKNOWN_KEY
+from sprung.vehicle import FULL, LAYOUTS, STATIONS, UNKNOWN_KEY
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Collection, Mapping, Sequence
 
     from pydantic import BaseModel
     from pydantic_core import ErrorDetails
@@ -46,20 +46,40 @@ def problems_from_validation(
     document
         What the file holds.
     """
-    said = {detail["loc"]: _problem(model, detail, file, document) for detail in details}
+    schema = _with_stations_of(document, model.model_json_schema())
+    said = {detail["loc"]: _problem(schema, detail, file, document) for detail in details}
     # A key that is misspelt is not missing as well, nor does a list lack what is faulty in it.
-    meant = {(*place[:-1], problem.do) for place, problem in said.items()}
+    meant = [(place[:-1], problem.do) for place, problem in said.items() if "Did you mean" in problem.do]
     inside = {place[:depth] for place in said for depth in range(len(place))}
     kept = [
         problem
         for place, problem in said.items()
-        if place not in inside and (*place[:-1], f"Did you mean '{place[-1]}'?") not in meant
+        if place not in inside and not any(place[:-1] == of and f"'{place[-1]}'" in do for of, do in meant)
     ]
     return list(dict.fromkeys(kept))  # two faults of one vector are one
 
 
-def _problem(model: type[BaseModel], detail: ErrorDetails, file: str, document: Mapping[str, Any]) -> Problem:
-    schema = model.model_json_schema()
+def _with_stations_of(document: Mapping[str, Any], node: Any) -> Any:
+    """Return a JSON schema without the wheel stations that the vehicle of a document does not have."""
+    vehicle = document.get("vehicle")
+    stated = vehicle.get("model", FULL.model) if isinstance(vehicle, dict) else FULL.model
+    wheels = next((layout.wheels for model, layout in LAYOUTS.items() if model == stated), tuple(STATIONS))
+    return _without_words(node, {name for wheel in STATIONS if wheel not in wheels for name in (wheel, f"pad {wheel}")})
+
+
+def _without_words(node: Any, words: Collection[str]) -> Any:
+    """Return a JSON schema with some words taken out of its lists of allowed ones."""
+    if isinstance(node, list):
+        return [_without_words(inner, words) for inner in node]
+    if not isinstance(node, dict):
+        return node
+    return {
+        key: [word for word in inner if word not in words] if key == "enum" else _without_words(inner, words)
+        for key, inner in node.items()
+    }
+
+
+def _problem(schema: dict[str, Any], detail: ErrorDetails, file: str, document: Mapping[str, Any]) -> Problem:
     place, kind = _written(document, detail["loc"]), detail["type"]
     if kind in {"extra_forbidden", UNKNOWN_KEY}:
         where = format_place(file, place, document)

@@ -66,6 +66,17 @@ def parse_toml(text: str, path: Path) -> dict[str, Any]:
         raise InputError([Problem(path.name, found, "a campaign file or vehicle file", do)]) from None
 
 
+_REPEATED = {
+    "Cannot overwrite a value": ("a key that its section has already", "Delete one of the two."),
+    "Duplicate inline table key": ("a key that its table has already", "Delete one of the two."),
+    "Cannot declare": (
+        "a section that the file has already",
+        "Put the keys of the two into one; a section that may be repeated, such as [[drop]], stands in double brackets.",
+    ),
+}
+"""What was found, and what to do, where something occurs twice: by the beginning of the message of `tomllib`."""
+
+
 def _syntax_problem(path: Path, text: str, message: str) -> Problem:
     match = re.fullmatch(r"(?P<what>.*) \(at (?:line (?P<line>\d+), column (?P<column>\d+)|end of document)\)", message)
     what = match["what"] if match else message
@@ -73,7 +84,11 @@ def _syntax_problem(path: Path, text: str, message: str) -> Problem:
     line = int(match["line"]) if match and match["line"] else len(lines)
     written = lines[min(line, len(lines)) - 1].strip()
     column = int(match["column"]) if match and match["column"] else len(lines[-1]) + 1
+    where, found = f"{path.name}: line {line}, column {column}", f"`{written[:60]}`"
+    for beginning, (repeated, remedy) in _REPEATED.items():
+        if what.startswith(beginning):
+            return Problem(where, f"{found}, {repeated}", "each key and section once", remedy)
     do = "Correct this line: text stands in double quotes, lists in [ ], and numbers have a decimal point."
     if path.suffix.lower() != ".toml":
         do = "Give the campaign file, which ends in .toml and names the recordings."
-    return Problem(f"{path.name}: line {line}, column {column}", f"`{written[:60]}`", f"TOML ({what})", do)
+    return Problem(where, found, f"TOML ({what})", do)

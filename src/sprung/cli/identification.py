@@ -49,17 +49,20 @@ def identify(
 ) -> None:
     """Identify all parameters and write the results folder (default: results/ beside the campaign)."""
     folder = output or (campaign if campaign.is_dir() else campaign.parent) / "results"
-    if not force:
-        _refuse_overwriting((folder, sprung.report.REPORT_FILES if report else sprung.report.RESULT_FILES))
+    _check_folders((folder, sprung.report.REPORT_FILES if report else sprung.report.RESULT_FILES), force=force)
     with working("reading the recordings") as progress:
         read = sprung.read(campaign, progress=progress)
         saved = identify_and_save(read, folder, report, force, progress, as_json, profile=profile or (), fall=fall)
     print_and_exit(saved.result, saved.files, as_json)
 
 
-def _refuse_overwriting(*folders: tuple[Path, Any]) -> None:
-    """Raise if files in these folders are not as sprung wrote them, before any work is done."""
-    problems = [problem for folder, files in folders for problem in sprung.files.overwriting_problems(folder, files)]
+def _check_folders(*folders: tuple[Path, Any], force: bool) -> None:
+    """Raise, before any work is done, if folders cannot be written to, or hold files that are not as sprung wrote them."""
+    problems = [
+        problem
+        for folder, files in folders
+        for problem in sprung.files.overwriting_problems(folder, () if force else files)
+    ]
     if problems:
         raise InputError(problems)
 
@@ -144,8 +147,8 @@ def validate(
     as_json: Json = False,
 ) -> None:
     """Cross-validate the identified vehicle: each drop fitted, and predicted from the other drops."""
-    if output is not None and not force:
-        _refuse_overwriting((output, ("validation.npz", "validation.json")))
+    if output is not None:
+        _check_folders((output, ("validation.npz", "validation.json")), force=force)
     with working("reading the recordings") as progress:
         found = sprung.validate(sprung.read(campaign, progress=progress), progress=progress)
         omissions = list(found.result.omissions)
@@ -178,10 +181,11 @@ def demo(
     """Write an example campaign, the paper's school bus, identify it, and compare the estimates with the true values."""
     with working("simulating the drops of the school bus") as progress:
         campaign = sprung.study.demo_campaign()
-        if not force:
-            _refuse_overwriting(
-                (folder, sprung.campaign.campaign_files(campaign)), (folder / "results", sprung.report.REPORT_FILES)
-            )
+        _check_folders(
+            (folder, sprung.campaign.campaign_files(campaign)),
+            (folder / "results", sprung.report.REPORT_FILES),
+            force=force,
+        )
         written = sprung.write(campaign, folder, overwrite=force)
         read = sprung.read(written, progress=progress)
         saved = identify_and_save(read, folder / "results", True, force, progress, as_json)

@@ -9,14 +9,14 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
-from typing import Any
-
-from rich.console import Console
-from rich.live import Live
-from rich.spinner import Spinner
-from rich.text import Text
+from typing import TYPE_CHECKING, Any
 
 from sprung.progress import Progress, Step
+
+if TYPE_CHECKING:
+    from rich.text import Text
+
+# rich is imported where a terminal shows the progress: without it, an interruption is reported from the first moment on.
 
 DEFECT = 1
 BAD_INPUT = 2
@@ -50,6 +50,9 @@ def working(first: str) -> Iterator[Progress]:
         _report_step(Step(first))
         yield _report_step
         return
+    from rich.console import Console  # noqa: PLC0415 (see above)
+    from rich.live import Live  # noqa: PLC0415
+
     console = Console(stderr=True)
     line = StatusLine(Step(first))
     if not console.is_terminal:
@@ -71,6 +74,8 @@ class StatusLine:
     """The status line: elapsed time, estimated remaining time of the stage, and current step."""
 
     def __init__(self, first: Step, clock: Callable[[], float] = time.monotonic) -> None:
+        from rich.spinner import Spinner  # noqa: PLC0415 (see above)
+
         self._clock = clock
         self._began = self._stage_began = clock()
         self._step = first
@@ -91,6 +96,8 @@ class StatusLine:
         return f"{elapsed} (about {_minutes(in_stage * (1 - done) / done)} more) {self._step}"
 
     def __rich__(self) -> Text:
+        from rich.text import Text  # noqa: PLC0415 (see above)
+
         frames = self._spinner.frames
         frame = frames[int(8 * self._clock()) % len(frames)]
         return Text(f"{frame} {self.text()}", no_wrap=True, overflow="ellipsis")

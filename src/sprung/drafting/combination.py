@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from sprung.drafting.channel import Channel
 from sprung.drafting.detected_drop import DetectedDrop, assign_dropped_wheels, wheel_score
 from sprung.drafting.examination import ExaminedRecording
+from sprung.drafting.excitation_names import with_named_excitation
 from sprung.drafting.logger_groups import common_name, group_by_drop
 from sprung.drafting.names import load_named, part_named, station_named, wheels_named
 from sprung.drafting.records import DraftDrop, DraftSensor
@@ -89,14 +90,17 @@ def combine_recordings(
     )
     several = Counter(files for files, _, _ in recorded)
     drafted = [
-        _drop(
-            files,
-            drop,
-            hint,
-            names,
-            next(recording for recording in recordings if recording.file.name == files[0]),
-            several[files],
-            sensors,
+        with_named_excitation(
+            _drop(
+                files,
+                drop,
+                hint,
+                names,
+                next(recording for recording in recordings if recording.file.name == files[0]),
+                several[files],
+                sensors,
+            ),
+            alone=several[files] == 1,
         )
         for (files, _, _), drop, hint in zip(recorded, assigned, hints, strict=True)
     ]
@@ -116,7 +120,7 @@ def _with_loads(
     open_ = [
         i
         for i, (drop, is_named) in enumerate(zip(drops, named, strict=True))
-        if not is_named and drop.found.slow_motion is not None
+        if not is_named and drop.excitation == "drop" and drop.found.slow_motion is not None
     ]
     motions = [slow[body] for i in open_ if (slow := drops[i].found.slow_motion) is not None]
     slower = find_slower_drops([drops[i].found.dropped_channels for i in open_], motions) if body else ()

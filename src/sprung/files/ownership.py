@@ -9,6 +9,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import tempfile
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
@@ -83,6 +84,12 @@ def overwriting_problems(folder: Path, files: Collection[str] | Mapping[str, byt
     place = next((path for path in (folder, *folder.absolute().parents) if path.exists()), folder)
     if not place.is_dir() or not os.access(place, os.W_OK):
         yield unwritable_folder(folder, "no permission")
+        return
+    try:
+        with tempfile.TemporaryFile(dir=place):
+            pass  # some file systems refuse new files whatever the permissions say
+    except OSError as error:
+        yield unwritable_folder(folder, error.strerror or str(error))
 
 
 def unwritable_folder(folder: Path, why: str) -> Problem:

@@ -105,21 +105,7 @@ def read_table(path: Path, others: Collection[str] = ()) -> SampleTable:
     InputError
         If it is missing or unreadable, if no format or more than one claims it, or if its content is faulty.
     """
-    try:
-        with path.open("rb") as file:
-            head = file.read(HEAD)
-    except FileNotFoundError:
-        beside = [other.name for other in path.parent.glob("*") if other.suffix != ".toml" and other.is_file()]
-        beside = [name for name in beside if name not in others]
-        do = "Put the recordings there, or correct the path."
-        if beside:
-            do = did_you_mean(path.name, beside).replace("Allowed:", "There are:")
-        raise InputError([Problem(path.name, f"no such file in {path.parent}", "a recording", do)]) from None
-    except IsADirectoryError:
-        raise InputError([Problem(path.name, "a folder", "a recording", "Name the file in it.")]) from None
-    except OSError as error:
-        reason = f"a file that cannot be read ({error.strerror})"
-        raise InputError([Problem(path.name, reason, "a recording", "Check its permissions.")]) from error
+    head = _head(path, others)
     known = formats()
     claiming = [name for name, format_ in known.items() if format_.claims(path, head)]
     match claiming:
@@ -131,3 +117,38 @@ def read_table(path: Path, others: Collection[str] = ()) -> SampleTable:
             found = f"a file that {len(claiming)} formats claim: {', '.join(claiming)}"
             do = "Export it in another format, or uninstall the package that claims too much."
     raise InputError([Problem(path.name, found, f"exactly one of the known formats: {', '.join(known)}", do)])
+
+
+def _head(path: Path, others: Collection[str]) -> bytes:
+    """Return the first bytes of a file.
+
+    Raises
+    ------
+    InputError
+        If it is missing or cannot be opened.
+    """
+    try:
+        with path.open("rb") as file:
+            return file.read(HEAD)
+    except FileNotFoundError:
+        beside = [other.name for other in path.parent.glob("*") if other.suffix != ".toml" and other.is_file()]
+        beside = [name for name in beside if name not in others]
+        do = "Put the recordings there, or correct the path."
+        if beside:
+            do = did_you_mean(path.name, beside).replace("Allowed:", "There are:")
+        problem = Problem(path.name, f"no such file in {path.parent}", "a recording", do)
+    except IsADirectoryError:
+        problem = Problem(path.name, "a folder", "a recording", "Name the file in it.")
+    except OSError as error:
+        reason = f"a file that cannot be read ({error.strerror})"
+        problem = Problem(path.name, reason, "a recording", "Check its permissions.")
+    except UnicodeEncodeError as error:
+        found = "a name with characters that file names cannot have with the present settings of the system"
+        expected = f"a name in the encoding of file names, {error.encoding}"
+        do = "Set the environment variable PYTHONUTF8=1 or a locale with UTF-8, or rename the file."
+        problem = Problem(path.name, found, expected, do)
+    except ValueError as error:
+        problem = Problem(
+            path.name, f"a name that no file can have ({error})", "the name of a recording", "Correct it."
+        )
+    raise InputError([problem])

@@ -19,7 +19,10 @@ Place = tuple[float, float] | tuple[float, float, float]
 USUAL_ROADS = ("A", "B", "C", "D", "E")
 """Classes of ISO 8608 that are asked for unless others are."""
 
-USUAL_SPEED = 80 / 3.6
+_KMH = 3.6
+"""km/h in 1 m/s."""
+
+USUAL_SPEED = 80 / _KMH
 """Speed that is asked for unless another is, m/s: 80 km/h."""
 
 HOUR = 3600.0
@@ -116,7 +119,8 @@ def checked_options(
         duration=duration,
     )
     if not 0 < duration < math.inf:
-        problems.add(f"{_WHERE}: duration", f"{duration:g} s", "a positive number of seconds", "Correct it.")
+        found = f"{duration / HOUR:g} h ({duration:g} s)"
+        problems.add(f"{_WHERE}: duration", found, "a positive duration", "Correct it; durations in Python are in s.")
     problems.raise_if_any()
     return options
 
@@ -141,8 +145,9 @@ def _checked_speeds(speeds: Sequence[float], problems: Problems) -> Iterator[flo
         if _SLOWEST <= speed <= _FASTEST:
             yield float(speed)
         else:
-            limits = f"{_SLOWEST:g} to {_FASTEST:g} m/s"
-            problems.add(f"{_WHERE}: speed", f"{speed:g} m/s", limits, "Correct it; speeds in Python are in m/s.")
+            found = f"{_KMH * speed:g} km/h ({speed:g} m/s)"
+            limits = f"{_KMH * _SLOWEST:g} to {_KMH * _FASTEST:g} km/h ({_SLOWEST:g} to {_FASTEST:g} m/s)"
+            problems.add(f"{_WHERE}: speed", found, limits, "Correct it; speeds in Python are in m/s.")
 
 
 def _checked_places(

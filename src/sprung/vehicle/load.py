@@ -68,8 +68,14 @@ class Item:
 
     @model_validator(mode="after")
     def _somewhere(self) -> Item:
-        if (self.position is None) != (self.on in STATIONS):
-            raise ValueError('an item needs either a position on the body or the wheel it sits on (on = "fl")')
+        if self.position is None and self.on is None:
+            raise ValueError('an item needs its position = [x, y, z] on the body, or the wheel it sits on (on = "fl")')
+        if self.position is None and self.on not in STATIONS:
+            raise ValueError(f'an item with on = "{self.on}" needs its position = [x, y, z] too')
+        if self.position is not None and self.on in STATIONS:
+            raise ValueError(
+                f'an item with on = "{self.on}" sits on that wheel and has no position: leave one of them out'
+            )
         return self
 
     @property

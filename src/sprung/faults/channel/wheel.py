@@ -22,7 +22,8 @@ def wheel(prediction: ChannelPrediction) -> Iterator[ChannelHypothesis]:
         there = {"on": station, "position": None} if stated.relative_to is None else {"relative_to": station}
         sensor = replace(stated, **there)
         what = f"the channel shows the motion of wheel {station}, not of {stated_place(stated)}"
-        do = "Correct on = ... in the campaign file, or move the sensor."
+        key = "on" if stated.relative_to is None else "relative_to"
+        do = f"Correct {key} = ... in the campaign file, or move the sensor."
         fault = Fault("wrong-wheel", prediction.sensor.channel, what, do)
         residual = prediction.residual_of(prediction.row(sensor) @ prediction.motion)
         yield _on_wheel(fault, residual, describe_sensor(prediction.channel, sensor))
