@@ -53,7 +53,7 @@ def records_text(drops: Iterable[DropReport], plural: bool = True) -> str:
     """
     found = {record_text(drop) for drop in drops} or {FREE}
     texts = [text for text in (FREE, DRIVEN) if text in found]
-    return enumerated([f"{text}s" for text in texts]) if plural else " or the ".join(texts)
+    return enumerated([f"{text}s" for text in texts]) if plural else " or ".join(texts)
 
 
 def limits_text(drop: DropReport) -> str:
