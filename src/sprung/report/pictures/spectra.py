@@ -24,6 +24,9 @@ _FINER = 4
 _FLOOR = 3e-4
 """Smallest value that is shown, as a part of the largest."""
 
+_ROOM = 4.0
+"""Upper end of the axis over the largest value, so that the note lies above the curves."""
+
 _PLACES = {"body": "sensors on the body", "wheel": "sensors at the wheels", "pad": "sensors on the pads"}
 """What a panel shows, by the place of its sensors."""
 
@@ -61,7 +64,7 @@ def spectra_picture(decays: LoadDecays, modes: Sequence[ModeEstimate]) -> Pictur
             continue
         # One-sided, mean over drops and channels.
         sizes = [np.sqrt(2 * power[:, part].mean(axis=(0, 1)) / rate)[shown] for power in powers]
-        top = 1.6 * float(sizes[0].max(initial=1e-12))
+        top = _ROOM * float(sizes[0].max(initial=1e-12))
         curves = (
             Curve(frequency[shown], sizes[0], "measured", "measured", 2.2),
             Curve(frequency[shown], sizes[1], "simulated", "fitted vehicle"),
