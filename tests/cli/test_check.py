@@ -49,6 +49,13 @@ def test_one_page_is_beside_the_campaign_unless_told(one: Folder, tmp_path: Path
     assert (tmp_path / "else" / "where" / "check.html").read_bytes() == beside.read_bytes()
 
 
+def test_the_page_is_named_as_it_was_given(one: Folder, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert f"Report: {Path('there') / 'check.html'}" in run("check", one.path, "-o", "there").out.splitlines()
+    said = run("check", one.path, "-o", "there", "--force", "--json").json
+    assert said["page"] == str(tmp_path.resolve() / "there" / "check.html")
+
+
 def test_drawings_are_files_on_wish(one: Folder) -> None:
     said = run("check", one.path, "--drawings", "--json").json
     assert said["drawings"] == [str(one.path / "check" / "empty_roll_left.svg")]

@@ -92,3 +92,31 @@ def test_no_word_is_broken(width: int) -> None:
     lines = wrap(f"see {path} for more", width, indent=2)
     assert " ".join(" ".join(lines).split()) == f"see {path} for more"
     assert any(line.strip().endswith(path) for line in lines)
+
+
+WIDE = Table(
+    "t",
+    ("name", "of", "aaaaaaaa", "bbbbbbbb", "cccccccc", "dddddddd", "eeeeeeee"),
+    (("one", "x", "1", "2", "", "4", "5"), ("one", "y", "1", "2", "", "", "")),
+    frozenset(("aaaaaaaa", "bbbbbbbb", "cccccccc", "dddddddd", "eeeeeeee")),
+    heads=2,
+)
+
+
+def test_further_blocks_have_the_rows_that_say_anything_there() -> None:
+    """Each named by all its heads; the last column does not stand alone where another can stand beside it."""
+    assert texts(arrange(WIDE, 30)) == [
+        "name  of  aaaaaaaa  bbbbbbbb",
+        "one   x          1         2",
+        "one   y          1         2",
+        "",
+        "name  of  cccccccc  dddddddd",
+        "one   x                    4",
+        "",
+        "name  of  eeeeeeee",
+        "one   x          5",
+    ]
+    assert texts(arrange(WIDE, 40))[4:] == [
+        "name  of  dddddddd  eeeeeeee",
+        "one   x          4         5",
+    ]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import re
 import sys
 import xml.etree.ElementTree as ET
@@ -142,3 +143,17 @@ def test_on_paper(odd: Result) -> None:
     written = sprung.report.pdf_of(odd)
     assert written.startswith(b"%PDF")
     assert len(re.findall(rb"/Type /Page\b", written)) >= 3 or b"/ObjStm" in written
+
+
+def test_a_note_has_a_ground_that_its_text_lies_on() -> None:
+    svg = picture_svg(everything())
+    grounds = [
+        tuple(map(float, match))
+        for match in re.findall(r'class="ground" x="([\d.]+)" y="([\d.]+)" width="([\d.]+)"', svg)
+    ]
+    notes = re.findall(r'class="note[^"]*" x="([\d.]+)" y="([\d.]+)" text-anchor="end">([^<]*)<', svg)
+    assert len(grounds) == len(notes) > 0
+    for (left, top, width), (right, base, text) in zip(grounds, notes, strict=True):
+        assert left + width >= float(right)
+        assert top < float(base) - 7 < float(base) < top + 12
+        assert width > 4.5 * len(html.unescape(text))

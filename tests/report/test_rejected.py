@@ -13,9 +13,10 @@ from goldens import stored_result
 from sprung.assessment import Verdict
 from sprung.errors import InputError
 from sprung.report import report_html, result_view, text_of
-from sprung.results import Result
+from sprung.results import PriorComparison, Result
 from sprung.results.withholding import withhold_estimates
 from sprung.tables import value_cells
+from sprung.uncertainty import Estimate
 
 REASON = "the model does not explain the records: in wheel_fl its error is 7.0 % of the signal"
 
@@ -95,3 +96,20 @@ def test_its_reasons_say_nothing_that_only_the_rejected_fit_says() -> None:
     assert "does not explain the records" in reasons
     assert "determine" not in reasons
     assert "only known" not in reasons
+
+
+def test_what_was_known_is_not_compared_with_a_model_that_does_not_hold(sound: Result) -> None:
+    """Neither an uncertain quantity, whose estimate is withheld, nor an exact one."""
+    uncertain, exact = (
+        PriorComparison(2.7, std, "m", Estimate(2.7, 0.1, None, "m", "estimated"), 1.65) for std in (0.1, 0.0)
+    )
+    known = {"total_mass": uncertain, "wheelbase": exact}
+    compared = dataclasses.replace(sound, setup=dataclasses.replace(sound.setup, known=known))
+    fixed = "Difference of a fixed quantity"
+    assert report_html(compared).count("1.6 standard uncertainties") + report_html(compared).count("1.7 standard") == 2
+    assert fixed in report_html(compared)
+    refused = withhold_estimates(dataclasses.replace(compared, verdict=Verdict("reject", (REASON,))))
+    assert [prior.missed for prior in refused.setup.known.values()] == [None, None]
+    page = report_html(refused)
+    assert "standard uncertainties</td>" not in page
+    assert fixed not in page

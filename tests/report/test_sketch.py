@@ -16,7 +16,7 @@ from sprung.campaign import Campaign, ModelChoice
 from sprung.report import Disc, Drawing, Stroke, TextShape, blank_sketch, sketch_sheet, sketch_svg, vehicle_sketch
 from sprung.report.sketch.labels import Box, Label, place_labels, text_box
 from sprung.uncertainty import KnownValue
-from sprung.vehicle import EMPTY, SCHOOL_BUS, WHEELS, Added, Item, Load, Sensor, Vehicle
+from sprung.vehicle import EMPTY, SCHOOL_BUS, WHEELS, Added, Item, Load, Sensor, Vehicle, VehicleModel, Wheel
 
 KNOWN = {"a": KnownValue(1.25), "b": KnownValue(1.51), "t_f": KnownValue(0.74), "t_r": KnownValue(0.70, 0.01)}
 CORNERS = [("fl", 0.1, 0.7), ("fr", 0.1, -0.7), ("rl", -2.9, 0.7), ("rr", -2.9, -0.7)]
@@ -194,3 +194,43 @@ def test_a_label_leaves_a_dimension_line_free_where_there_is_a_place_near() -> N
     assert (usual.box.is_crossed(*line), moved.box.is_crossed(*line)) == (True, False)
     everywhere = [((x, 0.0), (x, 200.0)) for x in np.arange(5.0, 200.0, 10.0).tolist()]
     assert place_labels([label], (), frame, everywhere) != (None,)
+
+
+@pytest.mark.parametrize(
+    ("model", "stations", "lengths", "missing"),
+    [
+        ("quarter", ("wheel",), set(), set()),
+        ("roll-plane", ("left", "right"), {"t"}, {"half-distance t"}),
+        ("pitch-plane", ("front", "rear"), {"a ?", "b ?"}, {"wheelbase", "centre of gravity (a, b)"}),
+    ],
+)
+def test_a_part_of_a_vehicle_has_its_own_wheels_and_lengths(
+    model: VehicleModel, stations: tuple[Wheel, ...], lengths: set[str], missing: set[str]
+) -> None:
+    sensors = tuple(Sensor(channel=f"at_{station}", on=station) for station in stations)
+    part = campaign(vehicle_model=model, sensors=sensors, wheelbase=None, known={}, loads=(EMPTY,))
+    sketch = vehicle_sketch(part)
+    plan, side = sketch.drawings
+    tyres = [shape for shape in plan.shapes if isinstance(shape, Stroke) and shape.kind == "wheel" and shape.closed]
+    assert len(tyres) == len(stations) == len(dots(plan))
+    circles = [shape for shape in side.shapes if isinstance(shape, Disc) and shape.kind == "wheel" and not shape.filled]
+    assert len(circles) == (2 if model == "pitch-plane" else 1)
+    every = {"t", "t_f", "t_r", "a ?", "b ?"}
+    assert every & set(words(plan)) == lengths
+    assert ("wheelbase ?" in words(side)) == (model == "pitch-plane")
+    assert set(sketch.unknown) == missing
+    for drawing in sketch.drawings:
+        assert_legible(drawing)
+
+
+def test_labels_leave_tyres_and_outline_free_where_there_is_room() -> None:
+    plan, _ = vehicle_sketch(campaign(loads=(EMPTY,))).drawings
+    lines = [
+        line
+        for shape in plan.shapes
+        if isinstance(shape, Stroke) and shape.closed and shape.kind in {"wheel", "outline"}
+        for line in zip(shape.points, (*shape.points[1:], shape.points[0]), strict=True)
+    ]
+    channels = {sensor.channel for sensor in SENSORS}
+    crossed = [text for text, box in boxes(plan) if text in channels and any(box.is_crossed(*line) for line in lines)]
+    assert crossed == []

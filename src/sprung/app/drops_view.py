@@ -14,7 +14,7 @@ from sprung.campaign import Campaign, parse_toml, read_document
 from sprung.checking import Check, check_prepared
 from sprung.errors import InputError, Problem
 from sprung.preprocess import prepare
-from sprung.report import picture_frame, picture_svg, recording_picture
+from sprung.report import limits_text, picture_frame, picture_svg, recording_picture
 
 LARGE = 100_000_000
 """Size of a file, bytes, beyond which it is read once: the part of it that is stated for the drop is drawn, not all of it."""
@@ -121,8 +121,6 @@ def _facts(check: Check) -> list[str]:
         found.append(f"Release at {report.release:.3f} s{landing}.")
     if report.wheels_seen:
         found.append(f"Wheels that fell, as detected: {', '.join(report.wheels_seen)}.")
-    if report.start is not None and report.end is not None:
-        found.append(
-            f"Free decay from {report.start:.3f} s ({report.why_start}) to {report.end:.3f} s ({report.why_end})."
-        )
+    if limits := limits_text(report):
+        found.append(limits)
     return [*found, *(f"{fault.where}: {fault.what}. {fault.do}" for fault in check.faults)]

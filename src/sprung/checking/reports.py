@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, get_args
 
-from sprung.campaign import Campaign, MissingEntry
+from sprung.campaign import Campaign, Excitation, MissingEntry
 from sprung.checking.recorded import PlottedRecording
 from sprung.dataframes import require_pandas
 from sprung.display import shown
@@ -143,6 +143,17 @@ class DropReport:
     def used_from(self) -> float | None:
         """From where the fit uses the drop, s on the recording's own clock; without a fit from where its decay begins."""
         return self.start if self.fit_start is None else self.fit_start
+
+    @property
+    def excitation(self) -> Excitation:
+        """What excited the vehicle, as its kind states."""
+        first = self.kind.partition(" ")[0]
+        return next((name for name in get_args(Excitation) if name == first), "drop")
+
+    @property
+    def is_driven(self) -> bool:
+        """Whether pads drive the vehicle all along, so that the used part is no free decay."""
+        return self.excitation == "pads"
 
     @property
     def label(self) -> str:

@@ -47,7 +47,7 @@ def check(
             Problem(fault.where, fault.what, "a usable decay in at least one drop", fault.do) for fault in found.faults
         )
     beside = campaign if campaign.is_dir() else campaign.parent
-    folder = (output or beside / "check").resolve()
+    folder = output or beside / "check"
     written: tuple[Path, ...] = ()
     omissions: list[str] = []
     if page or drawings:
@@ -56,9 +56,9 @@ def check(
     for omission in omissions:
         complain(omission)
     pages = [path for path in written if path.name == sprung.report.CHECK_FILE]
-    drawn = [str(path) for path in written if path not in pages]
+    drawn = [str(path.resolve()) for path in written if path not in pages]
     if as_json:
-        say_json({**found.document(), "page": str(pages[0]) if pages else None, "drawings": drawn})
+        say_json({**found.document(), "page": str(pages[0].resolve()) if pages else None, "drawings": drawn})
     else:
         say(sprung.report.text_of(sprung.report.check_view(found, pages[0] if pages else None)))
 

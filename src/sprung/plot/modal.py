@@ -25,7 +25,7 @@ from sprung.results import Result
 
 
 def spectra(result: Result, load: str | None = None, *, axes: Iterable[Axes] | None = None) -> tuple[Axes, ...]:
-    """Draw the spectra of the decays of one load, measured and fitted, with the identified modes.
+    """Draw the spectra of the records of one load, measured and fitted, with the identified modes.
 
     Parameters
     ----------
@@ -34,7 +34,7 @@ def spectra(result: Result, load: str | None = None, *, axes: Iterable[Axes] | N
     load
         Its name; the first one unless given.
     axes
-        One for the sensors on the body, and one for those at the wheels; a new figure unless given.
+        One for each panel: the sensors on the body, those at the wheels, those on pads; a new figure unless given.
 
     Returns
     -------
@@ -75,7 +75,7 @@ def stabilisation(
     Raises
     ------
     InputError
-        If there is no such load, or the modes were computed without a diagram.
+        If there is no such load, the modes were computed without a diagram, or the result has no free decay.
     """
     name, diagram = _diagram(of, load)
     [drawn] = draw(stability_picture(name, diagram), None if axes is None else [axes])
@@ -134,8 +134,15 @@ def mode(result: Result, name: str, load: str | None = None, *, phase: float = 0
     return axes
 
 
-def _decays(result: Result, load: str | None) -> LoadDecays:
-    by_load = {decays.load: decays for decays in decays_by_load(result)}
+def _decays(result: Result, load: str | None, free: bool = False) -> LoadDecays:
+    """Return the records of a load, its free decays where there are any; only these if `free`."""
+    by_load: dict[str, LoadDecays] = {}
+    for decays in decays_by_load(result):
+        if not (free and decays.is_driven):
+            by_load.setdefault(decays.load, decays)
+    if free and not by_load and result.series:
+        do = "Record drops, pushes or passes: poles of free decays need no vehicle model."
+        raise InputError([Problem("result", "forced responses on pads", "free decays", do)])
     if not by_load:
         raise InputError([Problem("result", "no series", "a result with its series", "Load it from its folder.")])
     return by_load[check_name(load or next(iter(by_load)), list(by_load), "load")]
@@ -148,7 +155,7 @@ def _diagram(
         case StabilisationDiagram():
             return load or "", of
         case Result():
-            decays = _decays(of, load)
+            decays = _decays(of, load, free=True)
             records = [record - record.mean(axis=1, keepdims=True) for record in decays.measured]
             return decays.load, stabilisation_diagram(records, decays.rate)
         case LoadModes():

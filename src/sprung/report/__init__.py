@@ -4,6 +4,7 @@ from sprung.report.drawing.palette import LIGHT
 from sprung.report.drawing.picture import Band, Curve, Mark, Panel, Picture, Points, Rule
 from sprung.report.drawing.svg import picture_frame, picture_svg
 from sprung.report.drawings import draw_check, draw_validation
+from sprung.report.excitations import limits_text
 from sprung.report.folder import (
     REPORT_FILES,
     RESULT_FILES,
@@ -96,6 +97,7 @@ __all__ = [
     "fleet_pictures",
     "fleet_view",
     "landing_picture",
+    "limits_text",
     "mode_caption",
     "modes_view",
     "monte_carlo_view",

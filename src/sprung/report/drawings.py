@@ -9,6 +9,7 @@ from pathlib import PurePath
 from sprung.assessment import DropValidation
 from sprung.checking import Check, DropReport
 from sprung.report.drawing.sheet import draw_sheet
+from sprung.report.excitations import record_text
 from sprung.report.pictures.amplitudes import amplitude_pictures
 from sprung.report.pictures.motions import motion_picture
 from sprung.report.pictures.recordings import landing_picture, recording_picture
@@ -46,7 +47,7 @@ def _drop_lines(drop: DropReport) -> Iterator[tuple[str, bool]]:
     if drop.start is None or drop.end is None:
         yield f"left out: {', '.join(drop.faults)}", True
     else:
-        yield f"free decay from {drop.start:.3f} s ({drop.why_start})", False
+        yield f"{record_text(drop)} from {drop.start:.3f} s ({drop.why_start})", False
         yield f"to {drop.end:.3f} s ({drop.why_end})", False
     if drop.contradicted:
         yield f"wheels detected at the release: {', '.join(drop.wheels_seen or ()) or 'none'}", True

@@ -35,7 +35,8 @@ class PriorComparison:
         Estimate; for an exact quantity the value itself.
     missed
         Difference between the value known beforehand and the value that the recordings, with everything else that is known,
-        give, in standard uncertainties; None where they do not determine it.
+        give, in standard uncertainties: of an exact quantity, which the fit holds, the value that it would have if it were
+        free. None where they do not determine it, or the result is rejected.
     """
 
     value: float

@@ -28,7 +28,8 @@ def withhold_estimates(result: Result) -> Result:
     -------
     Result
         With every estimated parameter and derived quantity ``unidentifiable`` and without value, and without ratios,
-        correlations, modes of the fitted vehicle, sensors, additional terms, force and amplitude curves and a next step.
+        comparisons with what was known beforehand, correlations, modes of the fitted vehicle, sensors, additional terms,
+        force and amplitude curves and a next step.
     """
     if result.verdict.state != "reject":
         return result
@@ -59,5 +60,5 @@ def without_value(estimate: Estimate) -> Estimate:
 
 
 def _without_estimates(setup: Setup) -> Setup:
-    known = {name: replace(prior, found=without_value(prior.found)) for name, prior in setup.known.items()}
+    known = {name: replace(prior, found=without_value(prior.found), missed=None) for name, prior in setup.known.items()}
     return replace(setup, known=known)

@@ -20,6 +20,9 @@ BINS = 400
 FINE = 10
 """Resolution of curves, steps per unit."""
 
+_EDGE = 1.0
+"""Distance beyond the edges of a panel up to which curves and points are drawn, units: the width of a line."""
+
 
 @dataclass(frozen=True)
 class Box:
@@ -104,10 +107,24 @@ def _segments(curve: Curve) -> Iterator[tuple[Real, Real]]:
             yield curve.x[kept], curve.y[kept]
 
 
-def _path(part: tuple[Real, Real], box: Box) -> str:
+def _inside(across: Real, down: Real, box: Box) -> Iterator[tuple[Real, Real]]:
+    """Yield the parts of a polyline between the upper and the lower edge of its panel."""
+    edges = box.top - _EDGE, box.bottom + _EDGE
+    for edge in edges:
+        beyond = down - edge
+        leaves = np.flatnonzero(beyond[:-1] * beyond[1:] < 0)
+        reached = beyond[leaves] / (beyond[leaves] - beyond[leaves + 1])
+        across = np.insert(across, leaves + 1, across[leaves] + reached * np.diff(across)[leaves])
+        down = np.insert(down, leaves + 1, edge)
+    inside = (down >= edges[0]) & (down <= edges[1])
+    for part in np.split(np.arange(inside.size), np.flatnonzero(np.diff(inside)) + 1):
+        if part.size > 1 and inside[part[0]]:
+            yield across[part], down[part]
+
+
+def _path(across: Real, down: Real) -> str:
     """Return a polyline as relative steps in fractions of a unit."""
-    across, down = (FINE * box.across(part[0])).round(), (FINE * np.clip(box.down(part[1]), -1e4, 1e4)).round()
-    places = np.stack([across, down]).astype(int)
+    places = np.stack([FINE * across, FINE * down]).round().astype(int)
     steps = np.diff(places, axis=1)
     steps = steps[:, (steps != 0).any(axis=0)]
     numbers = " ".join(map(str, steps.T.ravel().tolist())).replace(" -", "-")
@@ -117,7 +134,8 @@ def _path(part: tuple[Real, Real], box: Box) -> str:
 def _curve(curve: Curve, box: Box, key: str) -> Iterator[str]:
     if curve.band is not None:
         yield f'<path class="area {curve.role}" d="{_area(curve, curve.band, box)}"/>'
-    steps = "".join(_path(part, box) for part in _segments(curve))
+    parts = ((box.across(x), np.clip(box.down(y), -1e4, 1e4)) for x, y in _segments(curve))
+    steps = "".join(_path(*inside) for part in parts for inside in _inside(*part, box))
     if steps:
         look = f'stroke-width="{FINE * curve.width:g}"'
         if curve.dashed:

@@ -39,7 +39,7 @@ _NUMBER = 9.0
 """Height of a number beside an axis, units."""
 
 _NARROW = 5.0
-"""Mean width of a letter of the label beside a low panel, units."""
+"""Mean width of a letter of a note, or of the label beside a low panel, units."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -185,7 +185,10 @@ def _panel(panel: Panel, box: Box, zoomable: bool) -> Iterator[str]:
     yield from _label(panel, box)
     notes = [(text, kind) for text, kind in ((panel.note, "note"), (panel.warning, "note wrong")) if text]
     for line, (text, kind) in enumerate(notes):
-        place = f'x="{WIDTH - RIGHT - 2:.0f}" y="{box.top + 10 + 11 * line:.1f}" text-anchor="end"'
+        right, base, width = WIDTH - RIGHT - 2, box.top + 10 + 11 * line, _NARROW * len(text) + 3
+        ground = f'x="{right - width + 1:.0f}" y="{base - 9:.1f}" width="{width:.0f}" height="12"'
+        yield f'<rect class="ground" {ground}/>'
+        place = f'x="{right:.0f}" y="{base:.1f}" text-anchor="end"'
         yield f'<text class="{kind}" {place}>{escaped(text)}</text>'
 
 

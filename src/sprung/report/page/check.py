@@ -11,6 +11,7 @@ from typing import NamedTuple
 from sprung.checking import Check, DropReport, PlottedRecording
 from sprung.errors import Fault
 from sprung.report.drawing.picture import Picture
+from sprung.report.excitations import excitations_text, limits_text, readings_text, records_text
 from sprung.report.page.environment import ENVIRONMENT
 from sprung.report.pictures.recordings import landing_picture, recording_picture
 from sprung.report.sketch.sketch import vehicle_sketch
@@ -30,7 +31,7 @@ class DropPart(NamedTuple):
     report
         From the check.
     limits
-        Start and end of the free decay, with reasons.
+        Start and end of the free decay or the forced response, with reasons.
     contradiction
         The wheels that fell, where the campaign states others.
     faults
@@ -85,6 +86,9 @@ def check_html(check: Check) -> str:
         overview=drops_table(check.drops),
         channels=channels_table(check.drops),
         drops=drops,
+        tests=excitations_text(check.drops),
+        readings=readings_text(check.drops),
+        record=records_text(check.drops, plural=False),
         macros=ENVIRONMENT.get_template("macros.html").module,
     )
 
@@ -111,17 +115,11 @@ def _drops(check: Check) -> Iterator[DropPart]:
         yield DropPart(
             anchor=f"drop-{number}",
             report=drop,
-            limits=_limits(drop),
+            limits=limits_text(drop),
             contradiction=_contradiction(drop),
             faults=tuple((_channel(fault, drop), fault) for fault in check.faults_of(drop)),
             pictures=tuple(picture for picture in pictures if picture is not None),
         )
-
-
-def _limits(drop: DropReport) -> str:
-    if drop.start is None or drop.end is None:
-        return ""
-    return f"Free decay from {drop.start:.3f} s ({drop.why_start}) to {drop.end:.3f} s ({drop.why_end})."
 
 
 def _contradiction(drop: DropReport) -> str:

@@ -33,11 +33,15 @@ def _profiled(result: Result) -> bool:
     )
 
 
+def _has_free_decays(result: Result) -> bool:
+    return any(drop.name in result.series and not drop.is_driven for drop in result.drops)
+
+
 _REFERENCES = (
     Reference(
         "A New Physical Parameter Identification Method for Two-Axis On-Road Vehicles: Simulation and Experiment. "
         "Shock and Vibration 2015, article 191050, doi:10.1155/2015/191050.",
-        "the vehicle of seven degrees of freedom, drop tests with and without a known added mass, figures 7 to 9",
+        "the vehicle of seven degrees of freedom, tests with and without a known added mass, motion of the body compared",
     ),
     Reference(
         "Maine, R. E. and Iliff, K. W.: Application of Parameter Estimation to Aircraft Stability and Control: The "
@@ -93,13 +97,13 @@ _REFERENCES = (
         "Juang, J.-N. and Pappa, R. S.: An Eigensystem Realization Algorithm for Modal Parameter Identification and Model "
         "Reduction. J. Guid. Control Dyn. 8 (1985) 620.",
         "the stabilisation diagram",
-        lambda result: bool(result.series),
+        _has_free_decays,
     ),
     Reference(
         "Pappa, R. S., Elliott, K. B. and Schenk, A.: Consistent-Mode Indicator for the Eigensystem Realization Algorithm. "
         "J. Guid. Control Dyn. 16 (1993) 852.",
         "selection of the poles of the stabilisation diagram",
-        lambda result: bool(result.series),
+        _has_free_decays,
     ),
     Reference(
         "ISO 8855: Road vehicles - Vehicle dynamics and road-holding ability - Vocabulary.",

@@ -12,6 +12,7 @@ from sprung.errors import record_failure
 from sprung.report.drawing.picture import Picture
 from sprung.report.drawing.style import standalone_style
 from sprung.report.drawing.svg import picture_svg, reduce_height
+from sprung.report.excitations import excitations_text
 from sprung.report.page import sections
 from sprung.report.page.embedded import figure_json
 from sprung.report.page.environment import ENVIRONMENT
@@ -78,6 +79,7 @@ def render_report(result: Result, unfolded: bool = False) -> tuple[str, tuple[st
         record=record,
         running_head=_css_text(" · ".join([result.name, *(text for name, text in record if name == "Date")])),
         summary=summary_of(result),
+        tests=excitations_text(result.drops),
         sections=sections,
         script=Markup("" if unfolded else _script()),  # noqa: S704 (made here)
     )

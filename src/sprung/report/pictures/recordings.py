@@ -1,18 +1,25 @@
-"""A recording: its channels one above the other, with release, landing, free decay and faulty samples."""
+"""A recording: its channels one above the other, with release, landing, the part that is fitted and faulty samples."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
 from sprung.checking import DropReport, PlottedRecording
 from sprung.report.drawing.axis import Axis
 from sprung.report.drawing.picture import Band, Curve, Mark, Panel, Picture, Points, Rule
+from sprung.report.excitations import record_text
 from sprung.report.pictures.lanes import Lane, lanes_of
 
 _LANE = 0.42
 """Relative height of a lane."""
+
+_BEGINNINGS: Mapping[str, str] = {"drop": "Release and landing", "push": "Release"}
+"""Title of the picture of the beginning of a test."""
+
+_RELEASED = frozenset(_BEGINNINGS)
+"""Excitations after which the vehicle is let go."""
 
 
 def recording_picture(drop: DropReport, recorded: PlottedRecording) -> Picture:
@@ -55,7 +62,23 @@ def landing_picture(drop: DropReport, recorded: PlottedRecording) -> Picture | N
     time, last = recorded.time, max([drop.release, *moments])
     length = max(last - drop.release, 0.1)
     limits = max(drop.release - 0.3 * length, float(time[0])), min(last + 1.2 * length, float(time[-1]))
-    return _picture("Release and landing", drop, recorded, limits, True)
+    return _picture(_beginning(drop), drop, recorded, limits, True)
+
+
+def beginning_title(drops: Sequence[DropReport]) -> str:
+    """Return the titles of the pictures of the beginning of drops, for a caption; empty where no drop has one.
+
+    Parameters
+    ----------
+    drops
+        Reports of the drops.
+    """
+    titles = dict.fromkeys(_beginning(drop).lower() for drop in drops if drop.release is not None)
+    return ", or ".join(titles)
+
+
+def _beginning(drop: DropReport) -> str:
+    return _BEGINNINGS.get(drop.excitation, "First motion")
 
 
 def _picture(
@@ -77,7 +100,7 @@ def _picture(
     reason = f" Reason for its start: {drop.why_start}." if drop.why_start and not near else ""
     what = "Accelerations" if {channel.quantity for channel in drop.channels} == {"acceleration"} else "Readings"
     units = ", ".join(dict.fromkeys(channel.unit for channel in drop.channels))
-    description = f"{what} of {len(panels)} channels in {units}, the free decay shaded.{reason}"
+    description = f"{what} of {len(panels)} channels in {units}, the {record_text(drop)} shaded.{reason}"
     return Picture(title, Axis("time on the recording's clock, s", *limits), tuple(panels), description, zoomable=True)
 
 
@@ -93,9 +116,11 @@ def _few(ticks: tuple[tuple[float, str], ...]) -> tuple[tuple[float, str], ...]:
 
 
 def _events(drop: DropReport, labelled: bool) -> Iterator[Rule]:
+    word = "release" if drop.excitation in _RELEASED else "first motion"
+    record = "response" if drop.is_driven else "decay"
     if drop.release is not None:
-        yield Rule(drop.release, "release", f"release {drop.release:.3f} s" if labelled else "", dashed=True)
+        yield Rule(drop.release, "release", f"{word} {drop.release:.3f} s" if labelled else "", dashed=True)
     if drop.landing is not None:
         yield Rule(drop.landing, "landing", f"landing {drop.landing:.3f} s" if labelled else "", dashed=True)
     if drop.start is not None:
-        yield Rule(drop.start, "landing", f"decay from {drop.start:.3f} s" if labelled else "")
+        yield Rule(drop.start, "landing", f"{record} from {drop.start:.3f} s" if labelled else "")

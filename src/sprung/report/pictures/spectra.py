@@ -1,4 +1,4 @@
-"""Spectra of the free decays of one load, measured and fitted, with lines at the identified modes."""
+"""Spectra of the fitted records of one load, measured and fitted, with lines at the identified modes."""
 
 from __future__ import annotations
 
@@ -24,6 +24,12 @@ _FINER = 4
 _FLOOR = 3e-4
 """Smallest value that is shown, as a part of the largest."""
 
+_ROOM = 4.0
+"""Upper end of the axis over the largest value, so that the note lies above the curves."""
+
+_PLACES = {"body": "sensors on the body", "wheel": "sensors at the wheels", "pad": "sensors on the pads"}
+"""What a panel shows, by the place of its sensors."""
+
 
 def spectra_picture(decays: LoadDecays, modes: Sequence[ModeEstimate]) -> Picture:
     """Return the picture of the spectra of one load.
@@ -38,7 +44,7 @@ def spectra_picture(decays: LoadDecays, modes: Sequence[ModeEstimate]) -> Pictur
     Returns
     -------
     Picture
-        SI per √Hz over Hz: a panel for the body's sensors, and one for those at the wheels, of each quantity that is measured.
+        SI per √Hz over Hz: panels for the sensors on the body, at the wheels and on pads, of each quantity that is measured.
     """
     determined = [mode for mode in modes if mode.frequency_std is not None and mode.pole[1] > 0]
     rate = decays.rate
@@ -51,22 +57,23 @@ def spectra_picture(decays: LoadDecays, modes: Sequence[ModeEstimate]) -> Pictur
     rules = merge_labels([Rule(mode.damped_frequency, "mode", mode.name, dashed=True) for mode in determined], x)
     panels = []
     units = np.array(decays.units)
-    places = ((decays.on_body, "sensors on the body"), (~decays.on_body, "sensors at the wheels"))
-    for unit, (place, name) in itertools.product(dict.fromkeys(decays.units), places):
-        part = place & (units == unit)
+    places = np.array(decays.places)
+    for unit, (place, name) in itertools.product(dict.fromkeys(decays.units), _PLACES.items()):
+        part = (places == place) & (units == unit)
         if not part.any():
             continue
         # One-sided, mean over drops and channels.
         sizes = [np.sqrt(2 * power[:, part].mean(axis=(0, 1)) / rate)[shown] for power in powers]
-        top = 1.6 * float(sizes[0].max(initial=1e-12))
+        top = _ROOM * float(sizes[0].max(initial=1e-12))
         curves = (
             Curve(frequency[shown], sizes[0], "measured", "measured", 2.2),
             Curve(frequency[shown], sizes[1], "simulated", "fitted vehicle"),
         )
         axis = Axis(f"{unit} per √Hz", max(float(sizes[0].min(initial=top)), _FLOOR * top), top, log=True)
         panels.append(Panel(axis, (*rules, *curves), note=name))
+    what = "forced responses" if decays.is_driven else "decays"
     return Picture(
-        f"Spectra, {decays.load}", x, tuple(panels), "Spectra of the decays, with lines at the identified modes."
+        f"Spectra, {decays.title}", x, tuple(panels), f"Spectra of the {what}, with lines at the identified modes."
     )
 
 

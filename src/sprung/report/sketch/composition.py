@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Iterator
 from itertools import pairwise
 from typing import NamedTuple, TypeAlias
 
 from sprung.report.sketch.labels import LINE, Box, Label, PlacedLabel, place_labels, text_box
 from sprung.report.sketch.marks import Frame, Mark, Marks, grouped_labels, mark_shapes
-from sprung.report.sketch.shapes import Drawing, Shape, Stroke, TextShape
+from sprung.report.sketch.shapes import Disc, Drawing, Point, Shape, Stroke, TextShape
 
 WIDTH = 360.0
 """Width of a drawing, units: small enough for a telephone, and for two beside each other on a wide screen."""
@@ -18,6 +19,10 @@ _LABELS, _BELOW = 22.0, 56.0
 
 _MORE, _TRIES = 4 * LINE, 6
 """Increment of the upper margin while labels cannot be placed, units, and largest number of increments."""
+
+
+_FREE, _SIDES = frozenset(("dimension", "wheel", "outline")), 16
+"""Kinds of lines that labels leave free, and number of lines that stand for a circle."""
 
 
 Shapes: TypeAlias = Callable[[float], tuple[Frame, list[Shape], list[Label], float]]
@@ -46,8 +51,7 @@ def _attempt(drawn: tuple[Frame, list[Shape], list[Label], float], marks: Marks)
     wanted = [*grouped_labels(marked), *labels]
     taken = [_box(part) for part in parts if isinstance(part, TextShape)]
     height = bottom + _BELOW
-    dimensions = [part for part in parts if isinstance(part, Stroke) and part.kind == "dimension"]
-    lines = [line for part in dimensions for line in pairwise(part.points)]
+    lines = [line for part in parts for line in _lines(part)]
     placed = place_labels(wanted, taken, Box(2.0, 2.0, WIDTH - 2.0, height - 2.0), lines)
     return _Attempt(frame, parts, marked, wanted, placed, height)
 
@@ -89,6 +93,16 @@ def compose(title: str, description: str, shapes: Shapes, marks: Marks) -> Drawi
     for mark in marked:
         parts += mark_shapes(mark)
     return Drawing(title, description, WIDTH, height, tuple(parts), frame.scale, frame.origin)
+
+
+def _lines(part: Shape) -> Iterator[tuple[Point, Point]]:
+    """Yield the lines of a dimension, of a wheel or of the outline, which labels leave free where there is room."""
+    if isinstance(part, Stroke) and part.kind in _FREE:
+        yield from pairwise((*part.points, part.points[0]) if part.closed else part.points)
+    if isinstance(part, Disc) and part.kind in _FREE:
+        angles = [math.tau * i / _SIDES for i in range(_SIDES + 1)]
+        (x, y), r = part.centre, part.radius
+        yield from pairwise((x + r * math.cos(angle), y + r * math.sin(angle)) for angle in angles)
 
 
 def _box(text: TextShape) -> Box:

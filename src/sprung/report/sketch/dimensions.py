@@ -22,10 +22,13 @@ def wheels_from_above(drawn: Proportions, frame: Frame) -> Iterator[Shape]:
         Of the drawing.
     """
     long, wide = drawn.wheel_radius, drawn.wheel_width / 2
-    for x in (0.0, -drawn.wheelbase):
-        dashed = x != 0.0 and drawn.geometry.wheelbase.value is None
-        yield Stroke((frame.at(x, drawn.half_track), frame.at(x, -drawn.half_track)), "wheel", dashed)
-        for y in (drawn.half_track, -drawn.half_track):
+    layout = drawn.geometry.layout
+    for axle in layout.axles:
+        wheels = [drawn.wheel(wheel) for wheel in layout.wheels_of(axle)]
+        dashed = wheels[0][0] != 0.0 and not drawn.has_length
+        if len(wheels) > 1:
+            yield Stroke((frame.at(*wheels[0]), frame.at(*wheels[-1])), "wheel", dashed)
+        for x, y in wheels:
             corners = [(x - long, y - wide), (x + long, y - wide), (x + long, y + wide), (x - long, y + wide)]
             yield Stroke(tuple(frame.at(*corner) for corner in corners), "wheel", dashed, closed=True)
 
@@ -41,25 +44,21 @@ def half_distances(drawn: Proportions, frame: Frame) -> Iterator[Shape]:
         Of the drawing.
     """
     front, rear, _ = drawn.outline
-    geometry = drawn.geometry
-    for axle, (x, end, sign) in enumerate(((0.0, front, 1), (-drawn.wheelbase, rear, -1))):
-        letter = "fr"[axle]
-        names = (f"t_{letter}2", f"t_{letter}1") if geometry.separate else (f"t_{letter}",)
-        for springs, name in zip((True, False), names, strict=False):
-            length = (geometry.springs if springs else geometry.dampers)[axle]
-            y = drawn.half_distance(springs, axle) * (1 if springs else -1)
-            dashed = length.value is None
-            yield from _seats(frame, x, abs(y), springs, dashed)
-            line = frame.at(end, 0.0)[0] + 12.0 * sign
-            low, high = frame.at(0.0, 0.0)[1], frame.at(0.0, y)[1]
-            yield Stroke((frame.at(x, y), (line + 4.0 * sign, high)), "dimension", dashed)
-            yield Stroke(((line, low), (line, high)), "dimension", dashed, arrows="both")
-            anchor: Anchor = "start" if sign > 0 else "end"
-            middle, beside = (low + high) / 2, line + 5.0 * sign
-            # Springs above the centreline, dampers below it, however short the dimension line is.
-            upper = min(middle - 2.0, low - LINE - 3.5) if springs else max(middle - 2.0, low + 10.5)
-            yield TextShape(name, (beside, upper), "dimension", anchor, symbol=True)
-            yield TextShape(length.text, (beside, upper + LINE), "dimension", anchor)
+    for name, springs, axle, length in sorted(drawn.geometry.half_distances, key=lambda one: one[2]):
+        x, end, sign = drawn.axles[axle], (front, rear)[axle], (1, -1)[axle]
+        y = drawn.half_distance(springs, axle) * (1 if springs else -1)
+        dashed = length.value is None
+        yield from _seats(frame, x, abs(y), springs, dashed)
+        line = frame.at(end, 0.0)[0] + 12.0 * sign
+        low, high = frame.at(0.0, 0.0)[1], frame.at(0.0, y)[1]
+        yield Stroke((frame.at(x, y), (line + 4.0 * sign, high)), "dimension", dashed)
+        yield Stroke(((line, low), (line, high)), "dimension", dashed, arrows="both")
+        anchor: Anchor = "start" if sign > 0 else "end"
+        middle, beside = (low + high) / 2, line + 5.0 * sign
+        # Springs above the centreline, dampers below it, however short the dimension line is.
+        upper = min(middle - 2.0, low - LINE - 3.5) if springs else max(middle - 2.0, low + 10.5)
+        yield TextShape(name, (beside, upper), "dimension", anchor, symbol=True)
+        yield TextShape(length.text, (beside, upper + LINE), "dimension", anchor)
 
 
 def _seats(frame: Frame, x: float, y: float, springs: bool, dashed: bool) -> Iterator[Shape]:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from sprung.campaign import Campaign
 from sprung.results import Result
 from sprung.uncertainty import round_by_uncertainty
-from sprung.vehicle import EMPTY, Load, Sensor, Wheel, half_distances
+from sprung.vehicle import EMPTY, FULL, Layout, Load, Sensor, half_distances, layout_of, parameter_name
 
 _FINEST = 0.01
 """Smallest standard uncertainty for rounding, m: lengths are rounded to 1 mm at most."""
@@ -79,6 +79,8 @@ class Geometry:
         Whether a, b and the half-distances come from an identification.
     blank
         Whether it is to be filled in by hand, not to scale.
+    layout
+        Its wheel stations: of a whole vehicle, or of a part of one.
     """
 
     name: str
@@ -95,24 +97,25 @@ class Geometry:
     loads: tuple[Load, ...] = ()
     identified: bool = False
     blank: bool = False
+    layout: Layout = FULL
 
-
-_DRAWN_AT: Mapping[Wheel, Wheel] = {
-    "left": "fl",
-    "right": "fr",
-    "front": "fl",
-    "rear": "rl",
-    "wheel": "fl",
-}
-"""Where on a whole vehicle the wheel stations of a part of it are drawn."""
+    @property
+    def half_distances(self) -> Iterator[tuple[str, bool, int, Length]]:
+        """Name, whether of the springs, position of the axle, and length of each half-distance that the vehicle has."""
+        kinds = (
+            ((True, "2", self.springs), (False, "1", self.dampers)) if self.separate else ((True, "", self.springs),)
+        )
+        for is_spring, index, lengths in kinds if self.layout.rolls else ():
+            for i, axle in enumerate(self.layout.axles):
+                yield parameter_name("t", axle, index), is_spring, i, lengths[i]
 
 
 def _drawn(sensor: Sensor) -> Sensor:
-    """Return a sensor where it is drawn on a whole vehicle: what measures suspension travel over its wheel."""
+    """Return a sensor where it is drawn: what measures suspension travel, or a pad, at its wheel."""
     station = sensor.wheel or sensor.pad or (sensor.relative_to if sensor.position is None else None)
     if station is None:
         return sensor
-    return Sensor(channel=sensor.channel, on=_DRAWN_AT.get(station, station))
+    return Sensor(channel=sensor.channel, on=station)
 
 
 def geometry_of(source: Campaign | Result) -> Geometry:
@@ -135,7 +138,9 @@ def geometry_of(source: Campaign | Result) -> Geometry:
         lengths["wheelbase"] = Length(source.wheelbase.value, source.wheelbase.std)
     heights = {name: value for name, value in source.heights.by_key.items() if value is not None}
     separate = source.model.tracks == "separate"
-    return _geometry(source.name, lengths, heights, source.sensors, source.loads, separate, identified=False)
+    return _geometry(
+        source.name, lengths, heights, source.sensors, source.loads, separate, source.layout, identified=False
+    )
 
 
 def _of_result(result: Result) -> Geometry:
@@ -154,6 +159,7 @@ def _of_result(result: Result) -> Geometry:
         setup.sensors,
         setup.loads,
         result.fit.tracks == "separate",
+        layout_of(result.parameters),
         identified="estimated" in usable,
     )
 
@@ -165,6 +171,7 @@ def _geometry(
     sensors: tuple[Sensor, ...],
     loads: tuple[Load, ...],
     separate: bool,
+    layout: Layout,
     *,
     identified: bool,
 ) -> Geometry:
@@ -193,4 +200,5 @@ def _geometry(
         sensors=tuple(_drawn(sensor) for sensor in sensors),
         loads=tuple(load for load in loads if load.name != EMPTY.name),
         identified=identified,
+        layout=layout,
     )

@@ -1,6 +1,6 @@
 """Placement of labels near their points, without overlapping another label, a point or a leader line.
 
-Dimension lines are kept free too where that is possible close to the point.
+Dimension lines and outlines are kept free too where that is possible close to the point.
 """
 
 from __future__ import annotations
@@ -37,8 +37,8 @@ _DIRECTIONS = (
 )
 """Directions from a point to its label, in order of preference."""  # fmt: skip
 
-_CLOSE = 20.0
-"""Largest distance of a label that keeps a dimension line free, units."""
+_CLOSE = 30.0
+"""Largest distance of a label that keeps a dimension line or an outline free, units."""
 
 _NEAR = 10.0
 """Largest distance of a label without a leader line, units."""

@@ -9,13 +9,16 @@ from typing import TypeAlias
 from sprung.report.sketch.labels import Label
 from sprung.report.sketch.proportions import Proportions
 from sprung.report.sketch.shapes import Disc, Kind, Point, Shape, Stroke
-from sprung.vehicle import WHEELS, Wheel
+from sprung.vehicle import STATIONS, Wheel
 
 _MARK = 3.6
 """Half-size of the mark of a sensor or a load, units."""
 
 _COINCIDENT = 7.0
 """Distance of marks, units, below which they share one label."""
+
+_STATIONS = tuple(STATIONS)
+"""Names of all wheel stations."""
 
 _LONGEST = 26
 """Letters of a name that are shown at most."""
@@ -86,7 +89,7 @@ def mark_placer(
     wheel
         From a wheel station to its two coordinates on the drawing, m.
     """
-    stations: list[str | None] = ["body", *WHEELS, None]
+    stations: list[str | None] = ["body", *_STATIONS, None]
 
     def marks(frame: Frame) -> list[Mark]:
         placed = []
@@ -101,7 +104,7 @@ def mark_placer(
                 text = shortened(f"{load.name} {item.mass:.4g} kg")
                 if item.position is not None:
                     placed.append(Mark(frame.at(*project(item.position)), text, "load"))
-                elif item.on in WHEELS:
+                elif item.on in _STATIONS:
                     placed.append(Mark(frame.at(*wheel(item.on)), text, "load", False))
         return placed
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from sprung.report.sketch.geometry import Geometry
-from sprung.vehicle import Wheel
+from sprung.vehicle import STATIONS, Wheel
 
 _WHEELBASE = 2.7
 """Wheelbase of a typical car, m, drawn dashed where it is unknown."""
@@ -16,6 +16,9 @@ _HALF_TRACK, _WHEEL_RADIUS, _CG_HEIGHT = 0.27, 0.115, 0.2
 
 _OVERHANG, _BODY_BOTTOM, _BODY_TOP, _WHEEL_WIDTH = 0.2, 0.09, 0.48, 0.07
 """Of the outline, as parts of the wheelbase; a campaign has no outline of the body."""
+
+_ALONE = 0.4
+"""Length of the outline before and behind an axle that is the only one, as a part of a typical wheelbase."""
 
 _OUTSIDE = 1.15
 """Half track relative to the largest half-distance of springs and dampers, which are inside the wheels."""
@@ -61,7 +64,7 @@ class Proportions:
     def centre_of_gravity(self) -> tuple[float, float]:
         """Position (x, z) of the sprung mass's centre of gravity; half-way between the axles where a is not known."""
         a, height = self.geometry.a.value, self.geometry.cg_height.value
-        x = -self.wheelbase / 2 if a is None else -a
+        x = min(self.axles) / 2 if a is None else -a
         return x, _CG_HEIGHT * self.wheelbase if height is None else height
 
     def half_distance(self, springs: bool, axle: int) -> float:
@@ -85,19 +88,29 @@ class Proportions:
         wheel
             Its station.
         """
-        x = 0.0 if wheel[0] == "f" else -self.wheelbase
-        return x, self.half_track if wheel[1] == "l" else -self.half_track
+        station = STATIONS[wheel]
+        return -self.wheelbase if station.end < 0 else 0.0, station.side * self.half_track
+
+    @property
+    def axles(self) -> tuple[float, ...]:
+        """Position of each axle, m."""
+        return (0.0, -self.wheelbase) if self.geometry.layout.pitches else (0.0,)
+
+    @property
+    def has_length(self) -> bool:
+        """Whether the position of the rear axle is known, or there is none."""
+        return self.geometry.wheelbase.value is not None or not self.geometry.layout.pitches
 
     @property
     def outline(self) -> tuple[float, float, float]:
         """Front end, rear end and half-width of the outline of the body, which encloses everything on it."""
         x = [place[0] for place in self.places]
         y = [abs(place[1]) for place in self.places]
-        margin = _OVERHANG * self.wheelbase
+        margin = (_OVERHANG if self.geometry.layout.pitches else _ALONE) * self.wheelbase
         width = self.half_track + self.wheel_width
         return (
             max([margin, *(value + 0.25 * margin for value in x)]),
-            min([-self.wheelbase - margin, *(value - 0.25 * margin for value in x)]),
+            min([min(self.axles) - margin, *(value - 0.25 * margin for value in x)]),
             max([width, *(value + 0.1 * margin for value in y)]),
         )
 

@@ -34,10 +34,12 @@ class VehicleSketch:
     def key(self) -> str:
         """Legend of the sketch in a sentence or two."""
         geometry = self.geometry
-        seats = "circles: springs; diamonds: dampers" if geometry.separate else "circles: springs and dampers"
+        seats = "; circles: springs" + ("; diamonds: dampers" if geometry.separate else " and dampers")
+        axle = "front axle" if geometry.layout.pitches else "axle"
+        seats = seats if geometry.layout.rolls else ""
         return (
-            "Axes according to ISO 8855: x forward from the front axle, y to the left, z up from the ground. Dots: sensors on "
-            f"the body; rings: sensors on wheels; crossed squares: loads; {seats}. Outlines are schematic."
+            f"Axes according to ISO 8855: x forward from the {axle}, y to the left, z up from the ground. Dots: sensors on "
+            f"the body; rings: sensors on wheels; crossed squares: loads{seats}. Outlines are schematic."
         )
 
 
@@ -60,14 +62,13 @@ def vehicle_sketch(source: Campaign | Result) -> VehicleSketch:
 
 def _unknown(geometry: Geometry) -> Iterator[str]:
     """Yield the unknown dimensions of the vehicle, its sensors and its loads."""
-    if geometry.wheelbase.value is None:
+    if geometry.layout.pitches and geometry.wheelbase.value is None:
         yield "wheelbase"
-    if geometry.a.value is None:
+    if geometry.layout.pitches and geometry.a.value is None:
         yield "centre of gravity (a, b)"
-    kinds = {"2": geometry.springs, "1": geometry.dampers} if geometry.separate else {"": geometry.springs}
-    for index, lengths in kinds.items():
-        names = [f"t_{axle}{index}" for axle, length in zip("fr", lengths, strict=True) if length.value is None]
-        if names:
+    for springs in (True, False):
+        unknown = [one for one in geometry.half_distances if one[1] is springs and one[3].value is None]
+        if names := [name for name, *_ in unknown]:
             yield f"half-distance{'s' * (len(names) > 1)} {', '.join(names)}"
     if geometry.cg_height.value is None:
         yield "height of the centre of gravity"

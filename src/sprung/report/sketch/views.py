@@ -16,7 +16,7 @@ from sprung.report.sketch.labels import Label
 from sprung.report.sketch.marks import Frame, mark_placer
 from sprung.report.sketch.proportions import Proportions, proportions_of
 from sprung.report.sketch.shapes import Disc, Drawing, Shape, Stroke
-from sprung.vehicle import WHEELS, Wheel
+from sprung.vehicle import STATIONS, Wheel
 
 SIDE = 62.0
 """Margin for dimensions left and right of the vehicle, units."""
@@ -45,12 +45,13 @@ def plan_view(geometry: Geometry) -> Drawing:
         parts += wheels_from_above(drawn, frame)
         parts += half_distances(drawn, frame)
         bottom = frame.at(0.0, -half)[1]
-        parts += lengths_along(drawn, frame, bottom + 14.0, (("a", geometry.a), ("b", geometry.b)))
+        if geometry.layout.pitches:
+            parts += lengths_along(drawn, frame, bottom + 14.0, (("a", geometry.a), ("b", geometry.b)))
         parts += coordinate_axes(frame, "y")
         parts += scale_bar(drawn, frame.scale, bottom + 46.0)
         x, _ = drawn.centre_of_gravity
         labels = [Label(frame.at(x, 0.0), ("centre of gravity",), "gravity")]
-        parts += centre_of_gravity(frame.at(x, 0.0), geometry.a.value is None)
+        parts += centre_of_gravity(frame.at(x, 0.0), _cg_unknown(geometry))
         return frame, parts, labels, bottom
 
     marks = mark_placer(drawn, lambda position: (position[0], position[1]), drawn.wheel)
@@ -80,8 +81,8 @@ def side_view(geometry: Geometry) -> Drawing:
         ground = frame.at(0.0, 0.0)[1]
         parts.append(Stroke(((SIDE - 30.0, ground), (WIDTH - SIDE + 30.0, ground)), "outline"))
         labels = []
-        for x in (0.0, -drawn.wheelbase):
-            dashed = geometry.wheel_height.value is None or (x != 0.0 and geometry.wheelbase.value is None)
+        for x in drawn.axles:
+            dashed = geometry.wheel_height.value is None or (x != 0.0 and not drawn.has_length)
             hub = frame.at(x, drawn.wheel_radius)
             parts.append(Disc(hub, frame.scale * drawn.wheel_radius, "wheel", dashed=dashed))
             parts.append(Disc(hub, 1.6, "wheel", filled=True))
@@ -94,10 +95,11 @@ def side_view(geometry: Geometry) -> Drawing:
             parts.append(Stroke(((SIDE - 10.0, y), (WIDTH - SIDE + 10.0, y)), "gravity", dashed=True))
             labels.append(Label((SIDE - 10.0, y), ("roll axis", f"z {geometry.roll_axis_height.text}"), "gravity"))
         x, z = drawn.centre_of_gravity
-        unknown = geometry.a.value is None or geometry.cg_height.value is None
+        unknown = _cg_unknown(geometry) or geometry.cg_height.value is None
         parts += centre_of_gravity(frame.at(x, z), unknown)
         labels.append(Label(frame.at(x, z), ("centre of gravity", f"z {geometry.cg_height.text}"), "gravity"))
-        parts += lengths_along(drawn, frame, ground + 16.0, (("wheelbase", geometry.wheelbase),))
+        if geometry.layout.pitches:
+            parts += lengths_along(drawn, frame, ground + 16.0, (("wheelbase", geometry.wheelbase),))
         parts += coordinate_axes(frame, "z")
         return frame, parts, labels, ground
 
@@ -115,7 +117,16 @@ def _frame(drawn: Proportions, top: float, height: float) -> Frame:
     return Frame(scale, (SIDE - scale * rear, top + scale * height))
 
 
+def _cg_unknown(geometry: Geometry) -> bool:
+    """Whether the centre of gravity has a position along the vehicle, and it is not known."""
+    return geometry.layout.pitches and geometry.a.value is None
+
+
 def _description(geometry: Geometry) -> str:
-    known = [f"wheelbase {geometry.wheelbase.text}", f"a {geometry.a.text}", f"b {geometry.b.text}"]
-    placed = sum(sensor.position is not None or sensor.on in WHEELS for sensor in geometry.sensors)
-    return f"{', '.join(known)}; {placed} of {len(geometry.sensors)} sensors at known positions; {len(geometry.loads)} loads."
+    lengths = (
+        (("wheelbase", geometry.wheelbase), ("a", geometry.a), ("b", geometry.b)) if geometry.layout.pitches else ()
+    )
+    known = ", ".join(f"{name} {length.text}" for name, length in lengths)
+    placed = sum(sensor.position is not None or sensor.on in STATIONS for sensor in geometry.sensors)
+    sensors = f"{placed} of {len(geometry.sensors)} sensors at known positions"
+    return "; ".join(part for part in (known, sensors, f"{len(geometry.loads)} loads") if part) + "."

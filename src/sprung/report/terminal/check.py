@@ -12,8 +12,9 @@ from typing import NamedTuple
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from sprung.campaign import MissingEntry, drop_kind
+from sprung.campaign import MissingEntry
 from sprung.checking import ChannelReport, Check, DropReport
+from sprung.report.excitations import records_text
 from sprung.report.terminal.layout import hanging_text, render_table, significant_figures
 from sprung.report.terminal.result import fault_list
 from sprung.tables import Table
@@ -79,7 +80,7 @@ def check_view(check: Check, page: Path | None = None) -> RenderableType:
     """
     parts = [render_table(drops_table(check.drops))]
     if reasons := list(_reasons(check.drops)):
-        parts += [Text(), _listed("Limits of the free decays", reasons)]
+        parts += [Text(), _listed(f"Limits of the {records_text(check.drops)}", reasons)]
     if contradicted := [drop for drop in check.drops if drop.contradicted]:
         parts += [Text(), _listed("Wheels other than stated", map(_contradiction, contradicted))]
     if any(drop.channels for drop in check.drops):
@@ -106,7 +107,7 @@ def drops_table(drops: Sequence[DropReport]) -> Table:
     drops
         Reports of the drops.
     """
-    is_dropped = all(drop.kind == drop_kind(drop.wheels) or not drop.wheels for drop in drops)
+    is_dropped = all(drop.excitation == "drop" for drop in drops)
     done = ("dropped", "release") if is_dropped else ("excitation", "moves")
     headers = ("recording", "load", *done, "landing", "lift-off", "from", "to", "length", "faults")
     rows = []
@@ -116,7 +117,7 @@ def drops_table(drops: Sequence[DropReport]) -> Table:
         if drop.start is None:
             moments[-1] = "left out"
         rows.append([drop.label, drop.load, drop.kind, *moments, length, ", ".join(drop.faults)])
-    title = "Drops: times in s on each recording's own clock; free decay from ... to ..."
+    title = f"Drops: times in s on each recording's own clock; {records_text(drops, plural=False)} from ... to ..."
     spare = ("length", "faults", "load", "lift-off", "landing", done[1])
     return Table(title, headers, tuple(map(tuple, rows)), frozenset(headers[3:9]), spare)
 

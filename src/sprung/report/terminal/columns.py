@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 from rich.cells import cell_len
@@ -84,6 +84,10 @@ class _Column:
         least = max(map(cell_len, (*header.split(), *whole)), default=0)
         return cls(header, cells, number, least if number else max(least, min(natural, _READABLE)), natural)
 
+    def of_rows(self, rows: Sequence[int]) -> _Column:
+        """Return the column with some of its cells only, in the same width."""
+        return replace(self, cells=tuple(self.cells[row] for row in rows))
+
     def aligned(self, text: str, width: int) -> str:
         """Return a text flush left, a number flush right."""
         blanks = " " * (width - cell_len(text))
@@ -130,9 +134,14 @@ def _blocks(table: Table, columns: Sequence[_Column], width: int) -> list[Line] 
         while _sum([widths[i] for i in block]) > room:
             movable = [i for i in spare if i in block]
             block.remove(movable[0] if movable and len(block) > 1 else block[-1])
+        if lines and len(remaining) - len(block) == 1 and len(block) > 2:
+            del block[-1]  # so that the last column does not stand alone
         remaining = [i for i in remaining if i not in block]
+        cells = [columns[i] for i in block]
+        # Of further blocks only the rows that have anything there; the first one names every row.
+        rows = [k for k in range(len(table.rows)) if not lines or any(column.cells[k].strip() for column in cells)]
         lines += [Line("")] if lines else []
-        lines += _grid([*heads, *(columns[i] for i in block)], [*names, *(widths[i] for i in block)])
+        lines += _grid([column.of_rows(rows) for column in (*heads, *cells)], [*names, *(widths[i] for i in block)])
     return lines
 
 

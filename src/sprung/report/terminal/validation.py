@@ -110,7 +110,7 @@ def amplitude_table(load: str, amplitudes: Sequence[ModeAmplitude]) -> Table:
             rows.append((mode.mode, "fitted vehicle", *_ends(mode.model)))
     headers = ("mode", "from", "mm", "f Hz", "±", "damping", "mm ", "f Hz ", "± ", "damping ")
     title = f"Modes of the body at the largest and the smallest amplitude, {load}"
-    return Table(title, headers, tuple(rows), frozenset(headers[2:]), ("± ", "±", "damping ", "damping"))
+    return Table(title, headers, tuple(rows), frozenset(headers[2:]), ("± ", "±", "damping ", "damping"), heads=2)
 
 
 def _ends(curve: AmplitudeCurve) -> list[str]:

@@ -6,9 +6,10 @@ from collections import defaultdict
 
 from sprung.checking import DropReport
 from sprung.errors import Fault
+from sprung.report.excitations import limits_text, readings_text, records_text
 from sprung.report.page.sections.context import Context
 from sprung.report.pictures.motions import motion_picture
-from sprung.report.pictures.recordings import landing_picture, recording_picture
+from sprung.report.pictures.recordings import beginning_title, landing_picture, recording_picture
 from sprung.report.terminal.check import drops_table
 from sprung.report.terminal.validation import COLUMNS, validation_table
 from sprung.results import Result
@@ -32,7 +33,14 @@ def recordings(result: Result, unfolded: bool) -> Context:
                 "pictures": [picture for picture in pictures if picture is not None],
             }
         )
-    return {"overview": drops_table(result.drops), "faults": _merged(result.faults), "drawn": drawn}
+    return {
+        "overview": drops_table(result.drops),
+        "faults": _merged(result.faults),
+        "drawn": drawn,
+        "readings": readings_text(result.drops),
+        "record": records_text(result.drops, plural=False),
+        "beginning": beginning_title(result.drops),
+    }
 
 
 def _unfolded_drops(result: Result) -> set[str]:
@@ -43,10 +51,8 @@ def _unfolded_drops(result: Result) -> set[str]:
 
 
 def _limits(drop: DropReport) -> str:
-    if drop.start is None or drop.end is None:
-        return ""
     fit = "" if drop.fit_start is None else f" The fit begins at {drop.fit_start:.3f} s ({drop.why_fit})."
-    return f"Free decay from {drop.start:.3f} s ({drop.why_start}) to {drop.end:.3f} s ({drop.why_end}).{fit}"
+    return f"{limits}{fit}" if (limits := limits_text(drop)) else ""
 
 
 def _merged(faults: tuple[Fault, ...]) -> list[Fault]:

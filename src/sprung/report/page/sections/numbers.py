@@ -127,6 +127,7 @@ def known(result: Result) -> Context:
     heights = ", ".join(f"{key.replace('_', ' ')} {value:g} m" for key, value in result.setup.heights.items())
     return {
         "known": table,
+        "fixed": any(prior.missed is not None and not prior.std for prior in result.setup.known.values()),
         "heights": heights,
         "loads": list(_loads(result.setup, layout_of(result.parameters))),
         "sensors": _sensors(result.setup),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from sprung.errors import InputError
 from sprung.modal import stabilisation_diagram
+from sprung.report.excitations import records_text
 from sprung.report.page.animation import mode_drawings, wire_json
 from sprung.report.page.sections.context import Context
 from sprung.report.pictures.amplitudes import amplitude_pictures
@@ -19,14 +20,17 @@ def spectra(result: Result) -> Context | None:
     """Return the spectra of every load, with the identified modes."""
     pictures = [spectra_picture(decays, result.modes[decays.load]) for decays in decays_by_load(result)]
     lines = "" if result.verdict.state == "reject" else " Lines: damped frequencies of the identified modes."
-    text = f"Spectra of the free decays, mean over drops and sensors: measured, and of the fitted vehicle.{lines}"
+    fitted = [drop for drop in result.drops if drop.name in result.series]
+    text = f"Spectra of the {records_text(fitted)}, mean over drops and sensors: measured, and of the fitted vehicle.{lines}"
     return {"text": text, "pictures": pictures} if pictures else None
 
 
 def stabilisation(result: Result) -> Context | None:
-    """Return the stabilisation diagram of every load, which needs no vehicle model."""
+    """Return the stabilisation diagram of the free decays of every load, which needs no vehicle model."""
     pictures, notes = [], []
     for decays in decays_by_load(result):
+        if decays.is_driven:
+            continue
         try:
             records = [record - record.mean(axis=1, keepdims=True) for record in decays.measured]
             pictures.append(stability_picture(decays.load, stabilisation_diagram(records, decays.rate)))
