@@ -111,7 +111,7 @@ def identify_campaign(
     """
     tracks, terms = model_options(tracks, extras)
     begin = start_values(start)
-    campaign = resolve_campaign(campaign, progress).with_used_loads
+    campaign = resolve_campaign(campaign, progress)
     asked = check_asked(profile, campaign, tracks, terms)
     texts: dict[str, object] = {"tracks": tracks, "extras": terms, "fall": fall, "profile": asked}
     if begin:

@@ -120,7 +120,8 @@ class ModelStructure:
         tracks, terms
             Of the structure.
         """
-        return cls(campaign, tracks, terms, _everything_known(campaign), False, ())
+        used = campaign.with_used_loads
+        return cls(used, tracks, terms, _everything_known(used), False, ())
 
     @property
     def heights(self) -> Heights:
@@ -244,7 +245,7 @@ def choose_structure(
     problems = Problems()
     where = "campaign" if campaign.path is None else campaign.path.name
     wanted = campaign.model.extras if extras is None else extras
-    is_soft = any(load.is_soft for load in campaign.loads)
+    is_soft = any(load.is_soft for load in campaign.with_used_loads.loads)
     chosen_extras = (*(wanted or ()), *((SEAT_LOAD,) if is_soft and SEAT_LOAD not in (wanted or ()) else ()))
     forbidden = campaign.model.forbid if extras is None else ()
     for extra in chosen_extras:
