@@ -66,8 +66,8 @@ def test_counts(page: str) -> None:
     noticed, tried = (sum(one[key] for one in faults) for key in ("noticed", "campaigns"))
     assert str(noticed) in said(page)
     assert str(tried) in said(page)
-    assert "22 of 22" in said(page)  # docs/studies/friction.md, row "friction"
-    assert "61 of 62" in said(page)  # docs/studies/engine.md, column "found": 40 of 40, 9 of 10, 12 of 12
+    assert "99 of 100" in said(page)  # docs/studies/friction.md, row "friction"
+    assert "87 of 90" in said(page)  # docs/studies/engine.md, column "correct model": 40 of 40, 9 of 10, 38 of 40
 
 
 @pytest.mark.parametrize("page", PAGES)

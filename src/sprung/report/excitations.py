@@ -63,6 +63,10 @@ def limits_text(drop: DropReport) -> str:
     ----------
     drop
         Report of the drop.
+
+    Returns
+    -------
+    str
     """
     if drop.start is None or drop.end is None:
         return ""

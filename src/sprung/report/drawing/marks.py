@@ -111,9 +111,9 @@ def _inside(across: Real, down: Real, box: Box) -> Iterator[tuple[Real, Real]]:
     """Yield the parts of a polyline between the upper and the lower edge of its panel."""
     edges = box.top - _EDGE, box.bottom + _EDGE
     for edge in edges:
-        beyond = down - edge
-        leaves = np.flatnonzero(beyond[:-1] * beyond[1:] < 0)
-        reached = beyond[leaves] / (beyond[leaves] - beyond[leaves + 1])
+        outside = down - edge
+        leaves = np.flatnonzero(outside[:-1] * outside[1:] < 0)
+        reached = outside[leaves] / (outside[leaves] - outside[leaves + 1])
         across = np.insert(across, leaves + 1, across[leaves] + reached * np.diff(across)[leaves])
         down = np.insert(down, leaves + 1, edge)
     inside = (down >= edges[0]) & (down <= edges[1])
