@@ -52,7 +52,9 @@ def _attempt(drawn: tuple[Frame, list[Shape], list[Label], float], marks: Marks)
     taken = [_box(part) for part in parts if isinstance(part, TextShape)]
     height = bottom + _BELOW
     lines = [line for part in parts for line in _lines(part)]
-    placed = place_labels(wanted, taken, Box(2.0, 2.0, WIDTH - 2.0, height - 2.0), lines)
+    free = Box(2.0, 2.0, WIDTH - 2.0, height - 2.0)
+    # A label on an outline is better than none.
+    placed = min((place_labels(wanted, taken, free, kept) for kept in (lines, ())), key=lambda found: found.count(None))
     return _Attempt(frame, parts, marked, wanted, placed, height)
 
 
