@@ -17,6 +17,9 @@ from sprung.display import shown
 _CANDIDATES = 10
 """Number of names with most common letters that are compared with a mistyped one letter by letter."""
 
+_MOST_ALIKE = 4
+"""Words that are suggested together at the most: those of the four wheels."""
+
 
 class SprungError(Exception):
     """Base class of the errors that sprung raises."""
@@ -222,6 +225,7 @@ def did_you_mean(word: str, allowed: Iterable[str]) -> str:
         # Their order is by common letters, which does not distinguish exchanged letters from wrong ones.
         errors = {name: _typing_errors(word.lower(), name) for name in close}
         nearest = [name for name in errors if errors[name] == min(errors.values())]
+        nearest = nearest[: 1 if len(nearest) > _MOST_ALIKE else None]  # of many that are as close none is meant more
         *others, last = (f"'{name}'" for name in allowed if name.lower() in nearest)
         return f"Did you mean {', '.join(others)} or {last}?" if others else f"Did you mean {last}?"
     return f"Allowed: {', '.join(allowed)}." if allowed else "Nothing is allowed here."
