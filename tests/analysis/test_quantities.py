@@ -125,6 +125,18 @@ def test_wheels_that_stand_lower_in_the_end_have_been_dropped() -> None:
 
 
 @pytest.mark.slow
+def test_a_unit_that_is_taken_for_another_one_is_named() -> None:
+    """Neither is the SI unit: travel in millimetres, stated to be in centimetres."""
+    travel = Sensor(channel="travel", on="body", relative_to="fl", quantity="displacement", unit="cm")
+    campaign = simulated(CAR, (*default_sensors(CAR), travel), 0.02)
+    scale = np.array([1.0] * 8 + [10.0])[:, None]
+    recordings = [replace(one, values=scale * one.values) for one in campaign.recordings]
+    (fault,) = sprung.identify(campaign.with_recordings(recordings)).faults
+    assert (fault.code, fault.where) == ("unit", "travel")
+    assert "in mm, not in cm" in fault.what
+
+
+@pytest.mark.slow
 def test_a_displacement_in_another_unit_is_found() -> None:
     _, sensors = TESTS["eight accelerometers, suspension travel"]
     campaign = simulated(CAR, sensors, 0.02)

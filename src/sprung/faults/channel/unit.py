@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator, Mapping
 
 import numpy as np
@@ -11,6 +12,7 @@ from sprung.faults.channel.hypothesis import ChannelHypothesis
 from sprung.faults.channel_prediction import ChannelPrediction
 from sprung.faults.correction import scale_channel
 from sprung.units import Quantity, si_factor, si_symbol
+from sprung.vehicle import Sensor
 
 _MISTAKEN: Mapping[Quantity, tuple[str, ...]] = {
     "acceleration": ("g", "mm/s²", "cm/s²", "mg", "ft/s²"),
@@ -30,7 +32,7 @@ def unit(prediction: ChannelPrediction) -> Iterator[ChannelHypothesis]:
     gain = prediction.gain
     if not gain > 0:
         return
-    for factor, reading in _factors(prediction.sensor.quantity):
+    for factor, reading in _factors(prediction.sensor):
         if abs(np.log(gain / factor)) < _NEAR and prediction.gravity_allows(factor):
             yield _in_unit(prediction, factor, f"{reading}, as the comparison with the other channels shows")
 
@@ -46,10 +48,15 @@ def _in_unit(prediction: ChannelPrediction, factor: float, what: str) -> Channel
     )
 
 
-def _factors(quantity: Quantity) -> Iterator[tuple[float, str]]:
-    """Yield by how much a channel reads too much where one unit is taken for another, and which."""
-    stated = si_symbol(quantity)
-    for name in _MISTAKEN[quantity]:
-        si = si_factor(name, quantity)
-        yield 1 / si, f"the samples are in {name}, not in {stated} as stated"
-        yield si, f"the samples are in {stated}, not in {name} as stated"
+def _factors(sensor: Sensor) -> Iterator[tuple[float, str]]:
+    """Yield by how much a channel reads too much where one unit is taken for another, and which.
+
+    Of a unit that its file states, and the campaign does not, nothing is known but that the SI unit is one of both.
+    """
+    quantity, si = sensor.quantity, si_symbol(sensor.quantity)
+    units = (si, *_MISTAKEN[quantity])
+    pairs = itertools.product(units, units if sensor.unit is None else (sensor.unit,))
+    for actual, stated in pairs:
+        factor = si_factor(stated, quantity) / si_factor(actual, quantity)
+        if factor != 1.0 and (sensor.unit is not None or si in (actual, stated)):
+            yield factor, f"the samples are in {actual}, not in {stated} as stated"
