@@ -16,8 +16,6 @@ from sprung.faults.campaign import (
     several_vehicles,
     torsion_test,
 )
-from sprung.faults.campaign.known_quantity import known_quantities, none_of, restated
-from sprung.faults.campaign.load_frame import load_frames
 from sprung.faults.candidate_fit import CandidateFit
 from sprung.faults.channel_deletion import ChannelDeletion
 from sprung.faults.consistency import SHARE, SIGNIFICANT
@@ -26,6 +24,7 @@ from sprung.faults.drop import DROP_HYPOTHESES
 from sprung.faults.drop.deletion import DropDeletion
 from sprung.faults.hypothesis import Hypothesis, best_of
 from sprung.faults.residual_table import residual_table
+from sprung.faults.wrong_statement import WHOLLY, wrong_statement
 from sprung.progress import Progress, Step, silent
 from sprung.selection import FLEXIBLE_BODIES, WORTH_A_FIT, ModelSearch, fit_flexible_bodies
 
@@ -36,11 +35,8 @@ _RIVALS = 0.9
 """Share of the largest possible gain by leaving out a part, from which that part is examined although another one explains
 everything."""
 
-_MOST_PARTS, _MOST_FITS, _MOST_STATEMENTS, _MOST_FAULTS = 3, 3, 3, 3
-"""Parts that are left out by a fit, fits of hypotheses and of statements for each fault, and faults of a campaign."""
-
-_WHOLLY = 0.1
-"""Share of a misfit that may be left where the recordings are explained wholly, as a wrong statement does or is none."""
+_MOST_PARTS, _MOST_FITS, _MOST_FAULTS = 3, 3, 3
+"""Parts that are left out by a fit, fits of hypotheses for each fault, and faults of a campaign."""
 
 
 def isolate(base: CandidateFit, progress: Progress = silent) -> tuple[tuple[Hypothesis, ...], int]:
@@ -97,7 +93,7 @@ def _explains(first: CandidateFit, best: Hypothesis) -> bool:
     model has not is explained so far by many faults.
     """
     left = best.candidate
-    return best.is_gross or (left.is_explained and (first.is_explained or left.misfit <= _WHOLLY * first.misfit))
+    return best.is_gross or (left.is_explained and (first.is_explained or left.misfit <= WHOLLY * first.misfit))
 
 
 def most_likely(base: CandidateFit, progress: Progress = silent) -> tuple[Hypothesis | None, int]:
@@ -111,7 +107,7 @@ def most_likely(base: CandidateFit, progress: Progress = silent) -> tuple[Hypoth
         As for `isolate`.
     """
     progress(Step("testing the statements about loads and masses"))
-    best, fits = _wrong_statement(base)
+    best, fits = wrong_statement(base)
     if best is not None:
         return best, fits
     is_near = base.is_explained
@@ -183,50 +179,6 @@ def _groups(
         yield _of_parts(base, deletions, progress)
     if not (is_likelier or is_alone):
         yield exchanges, anew
-
-
-def _wrong_statement(base: CandidateFit) -> tuple[Hypothesis | None, int]:
-    """Return the one statement about loads or masses that explains the recordings wholly, being otherwise.
-
-    Where one of several known quantities may be wrong, none of them is used.
-    """
-    promising = sorted(
-        (
-            hypothesis
-            for hypothesis in (*load_frames(base), *known_quantities(base))
-            if _leaves_little(base, hypothesis, SHARE) and base.table.cost - hypothesis.table.cost > SIGNIFICANT
-        ),
-        key=lambda hypothesis: hypothesis.score(),
-    )[:_MOST_STATEMENTS]
-    confirmed = sorted(_confirmed_wholly(base, promising), key=lambda hypothesis: hypothesis.score())
-    if not confirmed:
-        return None, len(promising)
-    best, alike = confirmed[0], SIGNIFICANT * confirmed[0].candidate.fit.overdispersion
-    rivals = [one for one in confirmed[1:] if one.free <= best.free and one.score() - best.score() < alike]
-    if not rivals:
-        return restated(base, best), len(promising)
-    none = none_of(base, [best, *rivals])
-    found = _confirmed_wholly(base, [none] if none is not None else [])
-    return (restated(base, found[0]) if found else None), len(promising) + 1
-
-
-def _confirmed_wholly(base: CandidateFit, hypotheses: Sequence[Hypothesis]) -> list[Hypothesis]:
-    """Return those of some hypotheses that explain the recordings wholly, by their fits."""
-    confirmed: list[Hypothesis] = []
-    for hypothesis in hypotheses:
-        other, _ = hypothesis.confirm(base)
-        gain = 0.0 if other is None else base.table.cost - other.table.cost
-        if other is None or not _leaves_little(base, other, _WHOLLY):
-            continue
-        if gain > SIGNIFICANT * other.candidate.fit.overdispersion:
-            confirmed.append(other)
-    return confirmed
-
-
-def _leaves_little(base: CandidateFit, hypothesis: Hypothesis, part: float) -> bool:
-    """Whether a hypothesis leaves at most a part of the misfit; noise, where nothing else is left without it."""
-    left = hypothesis.candidate
-    return left.is_explained if base.is_explained else left.misfit <= part * base.misfit
 
 
 def _by_scores(base: CandidateFit) -> list[Hypothesis]:

@@ -40,7 +40,9 @@ _CLIPPED = 0.6
 _NEAR_END = 2.0
 """Samples before the end of its window at which a recording may end, its clock having been regularised."""
 
-_ALLOWED_FOR = "a fall and two periods of wheel hop after the release, as the sensors do not tell when every wheel has landed"
+_ALLOWED_FOR = (
+    "a fall and two periods of wheel hop after the release, as the sensors do not tell when every wheel has landed"
+)
 
 _NOT_PLACED = (
     "a fall and two periods of wheel hop after the release, as the landing follows from the positions of the body sensors, "

@@ -1,0 +1,73 @@
+"""The one statement about masses or loads that is wrong: it explains the recordings wholly, being otherwise."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from sprung.faults.campaign.known_quantity import known_quantities, none_of, restated
+from sprung.faults.campaign.load_frame import load_frames
+from sprung.faults.candidate_fit import CandidateFit
+from sprung.faults.consistency import SHARE, SIGNIFICANT
+from sprung.faults.hypothesis import Hypothesis
+
+WHOLLY = 0.1
+"""Share of a misfit that may be left where the recordings are explained wholly, as a wrong statement does or is none."""
+
+_MOST = 3
+"""Statements that are fitted otherwise, at the most."""
+
+
+def wrong_statement(base: CandidateFit) -> tuple[Hypothesis | None, int]:
+    """Return the one statement about loads or masses that explains the recordings wholly, being otherwise.
+
+    Where one of several known quantities may be wrong, none of them is used.
+
+    Parameters
+    ----------
+    base
+        The fit of the campaign as it is.
+
+    Returns
+    -------
+    hypothesis
+        None where no statement explains them so, or several do of which not all are known quantities.
+    fits
+        How many were made.
+    """
+    promising = sorted(
+        (
+            hypothesis
+            for hypothesis in (*load_frames(base), *known_quantities(base))
+            if _leaves_little(base, hypothesis, SHARE) and base.table.cost - hypothesis.table.cost > SIGNIFICANT
+        ),
+        key=lambda hypothesis: hypothesis.score(),
+    )[:_MOST]
+    confirmed = sorted(_confirmed_wholly(base, promising), key=lambda hypothesis: hypothesis.score())
+    if not confirmed:
+        return None, len(promising)
+    best, alike = confirmed[0], SIGNIFICANT * confirmed[0].candidate.fit.overdispersion
+    rivals = [one for one in confirmed[1:] if one.free <= best.free and one.score() - best.score() < alike]
+    if not rivals:
+        return restated(base, best), len(promising)
+    none = none_of(base, [best, *rivals])
+    found = _confirmed_wholly(base, [none] if none is not None else [])
+    return (restated(base, found[0]) if found else None), len(promising) + 1
+
+
+def _confirmed_wholly(base: CandidateFit, hypotheses: Sequence[Hypothesis]) -> list[Hypothesis]:
+    """Return those of some hypotheses that explain the recordings wholly, by their fits."""
+    confirmed: list[Hypothesis] = []
+    for hypothesis in hypotheses:
+        other, _ = hypothesis.confirm(base)
+        gain = 0.0 if other is None else base.table.cost - other.table.cost
+        if other is None or not _leaves_little(base, other, WHOLLY):
+            continue
+        if gain > SIGNIFICANT * other.candidate.fit.overdispersion:
+            confirmed.append(other)
+    return confirmed
+
+
+def _leaves_little(base: CandidateFit, hypothesis: Hypothesis, part: float) -> bool:
+    """Whether a hypothesis leaves at most a part of the misfit; noise, where nothing else is left without it."""
+    left = hypothesis.candidate
+    return left.is_explained if base.is_explained else left.misfit <= part * base.misfit
