@@ -206,9 +206,9 @@ class Campaign:
 
     @property
     def with_used_loads(self) -> Campaign:
-        """The same without loads that no drop has: recordings tell nothing of them."""
+        """The same without loads that no drop has, where there are drops: recordings tell nothing of them."""
         used = {EMPTY.name, *(drop.load for drop in self.drops)}
-        return replace(self, loads=tuple(load for load in self.loads if load.name in used))
+        return replace(self, loads=tuple(load for load in self.loads if load.name in used)) if self.drops else self
 
 
 def _as_record(given: object, kind: Callable[..., object], problems: Problems) -> object:
