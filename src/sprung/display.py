@@ -42,6 +42,28 @@ def shown(cls: type[Record]) -> type[Record]:
     return cls
 
 
+def enumerated(texts: Sequence[str], word: str = "and") -> str:
+    """Return several texts in one, with commas between them and a word before the last one.
+
+    Parameters
+    ----------
+    texts
+        Any number of them.
+    word
+        Such as ``and`` or ``or``.
+
+    Returns
+    -------
+    str
+
+    Examples
+    --------
+    >>> enumerated(["fl", "fr", "rl"], "or"), enumerated(["fl"])
+    ('fl, fr or rl', 'fl')
+    """
+    return f" {word} ".join(part for part in (", ".join(texts[:-1]), *texts[-1:]) if part)
+
+
 def text_of_record(record: object) -> str:
     """Return a record in at most ten lines.
 

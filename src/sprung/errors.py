@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 
-from sprung.display import shown
+from sprung.display import enumerated, shown
 
 _CANDIDATES = 10
 """Number of names with most common letters that are compared with a mistyped one letter by letter."""
@@ -226,8 +226,8 @@ def did_you_mean(word: str, allowed: Iterable[str]) -> str:
         errors = {name: _typing_errors(word.lower(), name) for name in close}
         nearest = [name for name in errors if errors[name] == min(errors.values())]
         nearest = nearest[: 1 if len(nearest) > _MOST_ALIKE else None]  # of many that are as close none is meant more
-        *others, last = (f"'{name}'" for name in allowed if name.lower() in nearest)
-        return f"Did you mean {', '.join(others)} or {last}?" if others else f"Did you mean {last}?"
+        meant = [f"'{name}'" for name in allowed if name.lower() in nearest]
+        return f"Did you mean {enumerated(meant, 'or')}?"
     return f"Allowed: {', '.join(allowed)}." if allowed else "Nothing is allowed here."
 
 

@@ -11,6 +11,7 @@ from sprung.campaign.drop import (
     DropTest,
     Excitation,
     drop_kind,
+    excitation_of,
     unique_drop_names,
     unique_recording_names,
 )
@@ -57,6 +58,7 @@ __all__ = [
     "check_document",
     "check_statements",
     "drop_kind",
+    "excitation_of",
     "explain_implausible",
     "fill_short_gaps",
     "find_logger_files",

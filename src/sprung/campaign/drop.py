@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import field, fields, replace
 from pathlib import PurePath
-from typing import Annotated, Literal, Self
+from typing import Annotated, Literal, Self, get_args
 
 from pydantic import Field, InstanceOf, model_validator
 
@@ -63,6 +63,27 @@ def drop_kind(wheels: Sequence[Wheel], excitation: Excitation = "drop") -> str:
         return kind
     motion, _, where = kind.partition(" ")
     return excitation if kind == "bounce" else f"{excitation} {where if motion in {'pitch', 'roll'} else kind}"
+
+
+def excitation_of(kind: str) -> Excitation:
+    """Return what excites the vehicle in a drop of a kind.
+
+    Parameters
+    ----------
+    kind
+        From `drop_kind`.
+
+    Returns
+    -------
+    str
+
+    Examples
+    --------
+    >>> excitation_of("pitch front"), excitation_of("push front"), excitation_of("pass")
+    ('drop', 'push', 'pass')
+    """
+    first = kind.partition(" ")[0]
+    return next((name for name in get_args(Excitation) if name == first), "drop")
 
 
 @checked_record

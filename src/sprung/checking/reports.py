@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass, field
-from typing import TYPE_CHECKING, Any, get_args
+from typing import TYPE_CHECKING, Any
 
-from sprung.campaign import Campaign, Excitation, MissingEntry
+from sprung.campaign import Campaign, Excitation, MissingEntry, excitation_of
 from sprung.checking.recorded import PlottedRecording
 from sprung.dataframes import require_pandas
 from sprung.display import shown
@@ -147,8 +147,7 @@ class DropReport:
     @property
     def excitation(self) -> Excitation:
         """What excited the vehicle, as its kind states."""
-        first = self.kind.partition(" ")[0]
-        return next((name for name in get_args(Excitation) if name == first), "drop")
+        return excitation_of(self.kind)
 
     @property
     def is_driven(self) -> bool:

@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from textwrap import wrap
 
 from sprung.campaign import placeholder
+from sprung.display import enumerated
 from sprung.drafting.draft_campaign import DraftCampaign
 from sprung.drafting.records import DraftDrop, DraftSensor
 from sprung.units import UNITS
@@ -111,7 +112,7 @@ def sensor_section(sensor: DraftSensor, model: VehicleModel) -> str:
     lines.append(_key("on", _place(sensor, model)))
     lines += _further_place(sensor, model)
     if sensor.unit is None:
-        other = _OTHER_UNIT.format(units=_either(tuple(UNITS[sensor.quantity])))
+        other = _OTHER_UNIT.format(units=enumerated(tuple(UNITS[sensor.quantity]), "or"))
         lines.append(_key("unit", _UNIT if sensor.quantity == "acceleration" else other))
     elif sensor.unit != sensor.stated_unit:
         lines.append(_key("unit", sensor.unit))
@@ -148,14 +149,10 @@ def _in(text: str, model: VehicleModel) -> str:
     pads = [pad for pad, over in PADS.items() if over in wheels]
     return (
         text.replace("[{wheels}]", f"[{', '.join(wheels)}]")
-        .replace("{wheels}", _either(wheels))
+        .replace("{wheels}", enumerated(wheels, "or"))
         .replace("{wheel}", wheels[0])
-        .replace("{pads}", _either(pads))
+        .replace("{pads}", enumerated(pads, "or"))
     )
-
-
-def _either(words: Sequence[str]) -> str:
-    return f"{', '.join(words[:-1])} or {words[-1]}" if len(words) > 1 else words[0]
 
 
 def load_section(name: str, draft: DraftCampaign) -> str:

@@ -6,6 +6,7 @@ import tomllib
 from collections.abc import Iterator
 
 from sprung.campaign import SCHEMA_LINE, find_placeholders
+from sprung.display import enumerated
 from sprung.drafting.draft_campaign import DraftCampaign
 from sprung.drafting.section_text import (
     added_totals,
@@ -94,7 +95,7 @@ def missing_in(text: str) -> tuple[tuple[str, str], ...]:
 def _loads(draft: DraftCampaign) -> str:
     """Return how a load is described."""
     wheels = LAYOUTS[draft.model].wheels
-    either = " or ".join(filter(None, (", ".join(wheels[:-1]), wheels[-1])))
+    either = enumerated(wheels, "or")
     piece = f'{{ mass = 20, on = "{wheels[0]}" }} ]'
     totals = ", ".join(f"{total} = {_ADDED[total]}" for total in added_totals(draft.model))
     return (

@@ -50,7 +50,9 @@ def wrong_statement(base: CandidateFit) -> tuple[Hypothesis | None, int]:
     if not rivals:
         return restated(base, best), len(promising)
     none = none_of(base, [best, *rivals])
-    found = _confirmed_wholly(base, [none] if none is not None else [])
+    if none is None:
+        return None, len(promising)
+    found = _confirmed_wholly(base, [none])
     return (restated(base, found[0]) if found else None), len(promising) + 1
 
 
@@ -59,10 +61,9 @@ def _confirmed_wholly(base: CandidateFit, hypotheses: Sequence[Hypothesis]) -> l
     confirmed: list[Hypothesis] = []
     for hypothesis in hypotheses:
         other, _ = hypothesis.confirm(base)
-        gain = 0.0 if other is None else base.table.cost - other.table.cost
         if other is None or not _leaves_little(base, other, WHOLLY):
             continue
-        if gain > SIGNIFICANT * other.candidate.fit.overdispersion:
+        if base.table.cost - other.table.cost > SIGNIFICANT * other.candidate.fit.overdispersion:
             confirmed.append(other)
     return confirmed
 

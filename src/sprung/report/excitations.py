@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 
 from sprung.checking import DropReport
+from sprung.display import enumerated
 
 _TESTS: Mapping[str, str] = {
     "drop": "drop tests",
@@ -87,8 +88,3 @@ def readings_text(drops: Iterable[DropReport]) -> str:
     channels = [channel for drop in drops for channel in drop.channels]
     what = "Accelerations" if {channel.quantity for channel in channels} <= {"acceleration"} else "Readings"
     return f"{what} in {', '.join(dict.fromkeys(channel.unit for channel in channels)) or 'm/s²'}"
-
-
-def enumerated(texts: Sequence[str]) -> str:
-    """Return several texts with commas between them, and ``and`` before the last one."""
-    return " and ".join(part for part in (", ".join(texts[:-1]), *texts[-1:]) if part)

@@ -10,12 +10,13 @@ from collections.abc import Collection, Iterator, Mapping
 from dataclasses import replace
 
 from sprung.campaign import Campaign
+from sprung.display import enumerated
 from sprung.errors import Fault
 from sprung.faults.candidate_fit import CandidateFit
 from sprung.faults.correction import Correction
 from sprung.faults.hypothesis import Hypothesis
 from sprung.uncertainty import KnownValue
-from sprung.vehicle import DERIVED, PARAMETERS
+from sprung.vehicle import DERIVED, PARAMETERS, evaluate_quantity
 
 _PLACE = "known."
 
@@ -42,9 +43,11 @@ def known_quantities(base: CandidateFit) -> Iterator[Hypothesis]:
 def _with_a_load_in_it(base: CandidateFit) -> Iterator[Hypothesis]:
     known = base.campaign.known
     total = known.get("total_mass")
-    for load in base.campaign.loads if total is not None else ():
+    if total is None:
+        return
+    for load in base.campaign.loads:
         mass = load.total_mass(base.campaign.layout)
-        if total is None or not 0 < mass < total.value:
+        if not 0 < mass < total.value:
             continue
         what = (
             f"the recordings contradict total_mass = {total.value:g} kg, and the difference is the mass of load '{load.name}', "
@@ -118,10 +121,9 @@ def _contradicted(stated: Mapping[str, KnownValue], candidate: CandidateFit) -> 
     values = [f"{name} = {value.value:g} {_unit(name)}" for name, value in stated.items()]
     states = "or state its uncertainty, { value = ..., std = ... }."
     if len(stated) > 1:
-        listed = f"{', '.join(values[:-1])} and {values[-1]}"
         what = (
-            f"{listed} contradict each other, and the recordings do not tell which of them is wrong; none of them was used, "
-            "so that nothing may be left to tell masses and rates"
+            f"{enumerated(values)} contradict each other, and the recordings do not tell which of them is wrong; none of them "
+            "was used, so that nothing may be left to tell masses and rates"
         )
         return Fault("known", places, what, f"Correct the wrong one under [known] in the campaign file, {states}")
     (name,) = stated
@@ -153,9 +155,8 @@ def _tells_scale(name: str) -> bool:
 
 
 def _estimate(name: str, candidate: CandidateFit) -> float:
-    parameters = candidate.fit.parameters
-    return DERIVED[name].value(parameters) if name in DERIVED else parameters[name]
+    return evaluate_quantity(name, candidate.fit.names, candidate.fit.values)[0]
 
 
 def _unit(name: str) -> str:
-    return PARAMETERS[name].unit if name in PARAMETERS else "kg"
+    return (PARAMETERS[name] if name in PARAMETERS else DERIVED[name]).unit
