@@ -17,6 +17,9 @@ for _variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
 settings.register_profile("same", derandomize=True, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("same")
 
+REPORT = Path(__file__).resolve().parent / "report"
+"""Folder of the stored results."""
+
 
 @pytest.fixture(scope="session")
 def shared() -> Path:
@@ -28,14 +31,16 @@ def shared() -> Path:
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """Results and displays that tests compare with are written anew with ``pytest tests/report --regenerate``."""
-    parser.addoption("--regenerate", action="store_true", help="write the results and displays in tests/report anew")
+    """What tests compare with is written anew with ``--regenerate``: ``pytest tests/report --regenerate``, for example."""
+    parser.addoption("--regenerate", action="store_true", help="write what these tests compare with anew")
 
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_cmdline_main(config: pytest.Config) -> None:
     """Write the stored results anew before any test reads one of them, in one process."""
-    if config.getoption("--regenerate"):
+    named = [Path(argument.partition("::")[0]).resolve() for argument in config.args]
+    has_results = any(REPORT.is_relative_to(path) or path.is_relative_to(REPORT) for path in named)
+    if config.getoption("--regenerate") and has_results:
         import goldens  # noqa: PLC0415 (NumPy with it, which reads the above)
 
         config.option.numprocesses, config.option.dist = None, "no"

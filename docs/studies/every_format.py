@@ -48,7 +48,7 @@ class Signals:
 
 
 @dataclass(frozen=True)
-class ModelSearch:
+class WritingMethod:
     """A way of writing a recording.
 
     Attributes
@@ -253,25 +253,25 @@ def lvm(signals: Signals, path: Path) -> Path:
 
 
 WAYS = {
-    "CSV, 17 digits": ModelSearch(csv),
-    "CSV, 9 digits": ModelSearch(partial(csv, digits=9), off=5e-9),
-    "MAT 5, struct": ModelSearch(mat5),
-    "MAT 5, timetable": ModelSearch(partial(mat5, struct_=timetable_of)),
-    "MAT 7, struct": ModelSearch(partial(mat5, packed=True)),
-    "MAT 7.3, struct": ModelSearch(mat73, "h5py"),
-    "HDF5": ModelSearch(hdf5, "h5py"),
-    "HDF5, packed": ModelSearch(hdf5_packed, "h5py"),
-    "Parquet": ModelSearch(parquet, "pyarrow"),
-    "TDMS": ModelSearch(tdms, "nptdms"),
-    "MDF4": ModelSearch(mdf4, "asammdf"),
-    "MDF4, packed": ModelSearch(partial(mdf4, compression=2), "asammdf"),
-    "UFF 58b": ModelSearch(uff, "pyuff"),
-    "UFF 58, text": ModelSearch(partial(uff, binary=0), "pyuff", off=5e-12),
-    "WAV, 64 bit floats": ModelSearch(wav, nameless=True),
-    "WAV, 32 bit floats": ModelSearch(partial(wav, kind=np.float32), off=2.0**-24, nameless=True),
-    "RPC, 16 bit integers": ModelSearch(rpc, "rpc3", off=1 / 32752),
-    "RPC, 32 bit floats": ModelSearch(partial(rpc, kind=float), "rpc3", off=2.0**-24),
-    "ISO-MME": ModelSearch(iso_mme),
-    "LVM": ModelSearch(lvm, off=1e-6),
+    "CSV, 17 digits": WritingMethod(csv),
+    "CSV, 9 digits": WritingMethod(partial(csv, digits=9), off=5e-9),
+    "MAT 5, struct": WritingMethod(mat5),
+    "MAT 5, timetable": WritingMethod(partial(mat5, struct_=timetable_of)),
+    "MAT 7, struct": WritingMethod(partial(mat5, packed=True)),
+    "MAT 7.3, struct": WritingMethod(mat73, "h5py"),
+    "HDF5": WritingMethod(hdf5, "h5py"),
+    "HDF5, packed": WritingMethod(hdf5_packed, "h5py"),
+    "Parquet": WritingMethod(parquet, "pyarrow"),
+    "TDMS": WritingMethod(tdms, "nptdms"),
+    "MDF4": WritingMethod(mdf4, "asammdf"),
+    "MDF4, packed": WritingMethod(partial(mdf4, compression=2), "asammdf"),
+    "UFF 58b": WritingMethod(uff, "pyuff"),
+    "UFF 58, text": WritingMethod(partial(uff, binary=0), "pyuff", off=5e-12),
+    "WAV, 64 bit floats": WritingMethod(wav, nameless=True),
+    "WAV, 32 bit floats": WritingMethod(partial(wav, kind=np.float32), off=2.0**-24, nameless=True),
+    "RPC, 16 bit integers": WritingMethod(rpc, "rpc3", off=1 / 32752),
+    "RPC, 32 bit floats": WritingMethod(partial(rpc, kind=float), "rpc3", off=2.0**-24),
+    "ISO-MME": WritingMethod(iso_mme),
+    "LVM": WritingMethod(lvm, off=1e-6),
 }
 """Every way but one: integers of a WAV file are parts of a full scale of 1 g, which a vehicle at rest would fill."""

@@ -42,7 +42,7 @@ FRONT, REAR, LEFT, RIGHT = WHEELS[:2], WHEELS[2:], WHEELS[::2], WHEELS[1::2]
 
 
 @dataclass(frozen=True, eq=False)
-class DropTest:
+class VehicleTest:
     """One vehicle, and how it is tested.
 
     Attributes
@@ -134,7 +134,7 @@ def _drops(height: float, **kinds: Sequence[tuple[Wheel, ...]]) -> tuple[Drop, .
 
 
 FLEET = (
-    DropTest(
+    VehicleTest(
         TABLE_1_CAR,
         (
             *_body("g", None, body_fl=(0.1, 0.74), body_fr=(0.1, -0.74), body_rl=(-2.86, 0.74), body_rr=(-2.86, -0.74)),
@@ -146,7 +146,7 @@ FLEET = (
         noise=0.02,
         rest=0.4,
     ),
-    DropTest(
+    VehicleTest(
         SMALL_CAR,
         (*_body(None, None, tower=(0.3, 0.52), sill=(-0.6, -0.66), boot=(-2.2, 0.25)), *_wheels(None, *WHEELS)),
         (Load(name="driver", items=(Item(mass=95, position=(-1.0, 0.35, 0.7)),)),),
@@ -156,7 +156,7 @@ FLEET = (
         rest=0.6,
         weighed=("total_mass",),
     ),
-    DropTest(
+    VehicleTest(
         VAN,
         (
             *_body(
@@ -181,7 +181,7 @@ FLEET = (
         noise=0.02,
         rest=0.5,
     ),
-    DropTest(
+    VehicleTest(
         SCHOOL_BUS,
         (
             *_body(None, None, body_fl=(0.9, 1.0), body_fr=(0.6, -1.1), body_rl=(-4.9, 1.1), body_rr=(-5.3, -0.7)),
@@ -194,7 +194,7 @@ FLEET = (
         rest=1.0,
         weighed=AXLES,
     ),
-    DropTest(
+    VehicleTest(
         TRUCK,
         (
             *_body("g", None, cab_left=(0.8, 0.9), cab_right=(0.9, -0.7), frame_left=(-1.6, 0.4)),

@@ -154,7 +154,7 @@ def _say(*words: str) -> None:
 
 
 @dataclass
-class ResidualTable:
+class ReaderOutcomes:
     """What came of one reader: how often what was said, and the first file of every failure by its reason."""
 
     counts: dict[str, int] = field(default_factory=lambda: dict.fromkeys(("read", "refused", "kept", "broken"), 0))
@@ -167,10 +167,10 @@ class ResidualTable:
             self.failures.setdefault(words[2][:120], []).append(words[1])
 
 
-def watch(name: str, folder: Path, seconds: float, seed: int) -> ResidualTable:
+def watch(name: str, folder: Path, seconds: float, seed: int) -> ReaderOutcomes:
     """Try a reader in processes of their own, one after another where they die."""
     folder.mkdir(parents=True)
-    tally, end = ResidualTable(), time.monotonic() + seconds
+    tally, end = ReaderOutcomes(), time.monotonic() + seconds
     for again in range(sys.maxsize):
         left = end - time.monotonic()
         if left < 1 and again:

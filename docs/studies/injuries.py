@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from campaigns import Real
-from fleet import DropTest
+from fleet import VehicleTest
 from scipy.signal import bilinear, butter, lfilter, lfilter_zi
 
 import sprung
@@ -37,7 +37,7 @@ class Injured:
     rewrite: Callable[[Lines], Lines] | None = None
 
 
-Act = Callable[[DropTest, sprung.Campaign, np.random.Generator], Injured | None]
+Act = Callable[[VehicleTest, sprung.Campaign, np.random.Generator], Injured | None]
 """Spoil a campaign of a test; None where the test has nothing that could be spoilt so."""
 
 
@@ -97,7 +97,7 @@ def of_kind(campaign: sprung.Campaign, kind: str) -> list[int]:
 def everywhere(kind: str, how: Callable[[np.random.Generator, float], Change]) -> Act:
     """Make an injury of one channel of a kind in all drops; `how` receives the samples per second."""
 
-    def act(test: DropTest, campaign: sprung.Campaign, random: np.random.Generator) -> Injured | None:
+    def act(test: VehicleTest, campaign: sprung.Campaign, random: np.random.Generator) -> Injured | None:
         channels = of_kind(campaign, kind)
         if not channels:
             return None
@@ -108,10 +108,10 @@ def everywhere(kind: str, how: Callable[[np.random.Generator, float], Change]) -
     return act
 
 
-def once(how: Callable[[np.random.Generator, DropTest], Change]) -> Act:
+def once(how: Callable[[np.random.Generator, VehicleTest], Change]) -> Act:
     """Make an injury of any one channel in any one drop."""
 
-    def act(test: DropTest, campaign: sprung.Campaign, random: np.random.Generator) -> Injured:
+    def act(test: VehicleTest, campaign: sprung.Campaign, random: np.random.Generator) -> Injured:
         drop, channel = int(random.integers(len(campaign.drops))), int(random.integers(len(campaign.sensors)))
         changes = changed(campaign, [channel], how(random, test), drop)
         return Injured(changes, (campaign.sensors[channel].channel, campaign.recordings[drop].name))
@@ -122,7 +122,7 @@ def once(how: Callable[[np.random.Generator, DropTest], Change]) -> Act:
 def clipped(kind: str) -> Act:
     """Reduce the range of a sensor so that it clips at the landing and after it."""
 
-    def act(test: DropTest, campaign: sprung.Campaign, random: np.random.Generator) -> Injured:
+    def act(test: VehicleTest, campaign: sprung.Campaign, random: np.random.Generator) -> Injured:
         channel = int(random.choice(of_kind(campaign, kind)))
         rest, decay = 0.0 if campaign.sensors[channel].high_pass else G, int((test.rest + 0.25) * test.rate)
         peak = max(float((one.values[channel, decay:] - rest).max()) for one in campaign.recordings)
@@ -136,7 +136,7 @@ def clipped(kind: str) -> Act:
 def exchanged(first: str, second: str, in_one: bool = False) -> Act:
     """Exchange two channels of two kinds, in all drops or in one."""
 
-    def act(_: DropTest, campaign: sprung.Campaign, random: np.random.Generator) -> Injured:
+    def act(_: VehicleTest, campaign: sprung.Campaign, random: np.random.Generator) -> Injured:
         one = int(random.choice(of_kind(campaign, first)))
         other = int(random.choice([i for i in of_kind(campaign, second) if i != one]))
         drop = int(random.integers(len(campaign.drops)))
@@ -153,7 +153,16 @@ def exchanged(first: str, second: str, in_one: bool = False) -> Act:
     return act
 
 
-def through(values: Real, corner: float, test: DropTest) -> Real:
+def copied(_: VehicleTest, campaign: sprung.Campaign, random: np.random.Generator) -> Injured:
+    """Record a channel from the sensor of another one, in all drops."""
+    one, other = random.choice(len(campaign.sensors), 2, replace=False).tolist()
+    order = np.arange(len(campaign.sensors))
+    order[one] = other
+    recordings = tuple(replace(each, values=each.values[order]) for each in campaign.recordings)
+    return Injured(campaign.with_recordings(recordings), (campaign.sensors[one].channel,))
+
+
+def through(values: Real, corner: float, test: VehicleTest) -> Real:
     """Send what a sensor reads through a first-order high-pass that settled long before the release, corner in Hz."""
     numerator, denominator = butter(1, corner, "highpass", fs=test.rate)
     level = values[: int(0.9 * test.rest * test.rate)].mean()
@@ -163,7 +172,7 @@ def through(values: Real, corner: float, test: DropTest) -> Real:
 def corner_unstated(kind: str, every: bool = False) -> Act:
     """Remove the stated high-pass of one or all AC-coupled sensors, or filter DC-coupled ones at 0.05 to 2 Hz."""
 
-    def act(test: DropTest, campaign: sprung.Campaign, random: np.random.Generator) -> Injured | None:
+    def act(test: VehicleTest, campaign: sprung.Campaign, random: np.random.Generator) -> Injured | None:
         chosen = of_kind(campaign, kind)
         if not chosen:
             return None
@@ -178,7 +187,7 @@ def corner_unstated(kind: str, every: bool = False) -> Act:
     return act
 
 
-def corner_misstated(_: DropTest, campaign: sprung.Campaign, random: np.random.Generator) -> Injured | None:
+def corner_misstated(_: VehicleTest, campaign: sprung.Campaign, random: np.random.Generator) -> Injured | None:
     """State twice or half the corner of a sensor's high-pass."""
     chosen = of_kind(campaign, "AC")
     if not chosen:
@@ -219,7 +228,7 @@ def ramp(random: np.random.Generator, _: float) -> Change:
     return lambda values: values + np.linspace(0.0, end, values.size)
 
 
-def spikes(random: np.random.Generator, test: DropTest) -> Change:
+def spikes(random: np.random.Generator, test: VehicleTest) -> Change:
     """Put one to three spikes of a sample each on the motion, 30 to 300 m/s² high."""
     first, count = int((test.rest + 0.3) * test.rate), int(random.integers(1, 4))
 
@@ -232,12 +241,12 @@ def spikes(random: np.random.Generator, test: DropTest) -> Change:
     return how
 
 
-def dead(random: np.random.Generator, test: DropTest) -> Change:
+def dead(random: np.random.Generator, test: VehicleTest) -> Change:
     """Let a channel read nothing but noise about its rest."""
     return lambda values: values[0] + test.noise * random.standard_normal(values.size)
 
 
-def twist(test: DropTest, campaign: sprung.Campaign, random: np.random.Generator) -> Injured:
+def twist(test: VehicleTest, campaign: sprung.Campaign, random: np.random.Generator) -> Injured:
     """Let the body twist at 9 to 15 Hz, driven by the wheels' diagonals, to a tenth of what it does else."""
     omega, damping = 2 * np.pi * random.uniform(9, 15), random.uniform(0.02, 0.05)
     filters = bilinear([1, 0, 0], [1, 2 * damping * omega, omega**2], test.rate)
@@ -314,6 +323,7 @@ OF_SENSORS: Sequence[Injury] = (
            "a body channel and a wheel channel are exchanged", exchanged("body", "wheel")),
     Injury("exchanged, one drop", ("exchanged",),
            "two channels of one drop are exchanged", exchanged("any", "any", in_one=True)),
+    Injury("copied", ("copy",), "a channel has the samples of another one", copied),
     Injury("twist", ("twist",), "the body has a torsion mode at 9 to 15 Hz, with a tenth of its motion", twist),
 )  # fmt: skip
 """Of sensors, their cables and descriptions; and of the body, which is not as stiff as the model has it."""

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
-from fleet import DropTest
+from fleet import VehicleTest
 from injuries import Act, Injured, Injury
 
 import sprung
@@ -19,7 +19,7 @@ Place = tuple[float, float, float]
 def described(kind: str, how: Callable[[Sensor, sprung.Campaign, np.random.Generator], Sensor]) -> Act:
     """Describe a sensor on the ``body`` or a ``wheel`` otherwise than it is."""
 
-    def act(_: DropTest, campaign: sprung.Campaign, random: np.random.Generator) -> Injured:
+    def act(_: VehicleTest, campaign: sprung.Campaign, random: np.random.Generator) -> Injured:
         chosen = [i for i, one in enumerate(campaign.sensors) if (one.on == "body") == (kind == "body")]
         i = int(random.choice(chosen))
         sensors = list(campaign.sensors)
@@ -59,7 +59,7 @@ def other_wheel(sensor: Sensor, _: sprung.Campaign, random: np.random.Generator)
 def loads_exchanged(every: bool) -> Act:
     """Take an empty drop for a loaded one and the other way round, or all of them."""
 
-    def act(_: DropTest, campaign: sprung.Campaign, random: np.random.Generator) -> Injured | None:
+    def act(_: VehicleTest, campaign: sprung.Campaign, random: np.random.Generator) -> Injured | None:
         loaded = [drop for drop in campaign.drops if drop.load != "empty"]
         if not loaded:
             return None
@@ -78,7 +78,7 @@ def loads_exchanged(every: bool) -> Act:
     return act
 
 
-def load_moved(_: DropTest, campaign: sprung.Campaign, random: np.random.Generator) -> Injured | None:
+def load_moved(_: VehicleTest, campaign: sprung.Campaign, random: np.random.Generator) -> Injured | None:
     """Write an item of the load 0.2 m from where it was, forward or left or the other ways."""
     load = campaign.loads[-1]
     if not load.items:
@@ -92,13 +92,13 @@ def load_moved(_: DropTest, campaign: sprung.Campaign, random: np.random.Generat
     return Injured(replace(campaign, loads=(*campaign.loads[:-1], wrong)), (load.name,))
 
 
-Other = Callable[[DropTest, Drop, Load, np.random.Generator], tuple[Vehicle, Load, Drop]]
+Other = Callable[[VehicleTest, Drop, Load, np.random.Generator], tuple[Vehicle, Load, Drop]]
 
 
 def one_drop(how: Other) -> Act:
     """Let one drop happen otherwise than the campaign file says."""
 
-    def act(test: DropTest, campaign: sprung.Campaign, random: np.random.Generator) -> Injured:
+    def act(test: VehicleTest, campaign: sprung.Campaign, random: np.random.Generator) -> Injured:
         i = int(random.integers(len(campaign.drops)))
         drop = campaign.drops[i]
         vehicle, load, dropped = how(test, drop, campaign.load(drop.load), random)
@@ -111,7 +111,7 @@ def one_drop(how: Other) -> Act:
     return act
 
 
-def brake(test: DropTest, drop: Drop, load: Load, random: np.random.Generator) -> tuple[Vehicle, Load, Drop]:
+def brake(test: VehicleTest, drop: Drop, load: Load, random: np.random.Generator) -> tuple[Vehicle, Load, Drop]:
     """Brake one axle: its dampers 1.6 times as strong, its springs 1.15 times as stiff."""
     axle = str(random.choice(["f", "r"]))
     stronger = {f"c_s{axle}": 1.6, f"k_s{axle}": 1.15}
@@ -119,7 +119,7 @@ def brake(test: DropTest, drop: Drop, load: Load, random: np.random.Generator) -
     return Vehicle.from_parameters(parameters, name=test.vehicle.name), load, drop
 
 
-def passenger(test: DropTest, drop: Drop, load: Load, random: np.random.Generator) -> tuple[Vehicle, Load, Drop]:
+def passenger(test: VehicleTest, drop: Drop, load: Load, random: np.random.Generator) -> tuple[Vehicle, Load, Drop]:
     """Put 15 % more mass on the body, left or right ahead of its middle."""
     vehicle = test.vehicle
     side = random.choice([-0.3, 0.3])
@@ -127,7 +127,7 @@ def passenger(test: DropTest, drop: Drop, load: Load, random: np.random.Generato
     return vehicle, Load(name="more", items=(*load.items, more)), replace(drop, load="more")
 
 
-def fewer_wheels(test: DropTest, drop: Drop, load: Load, random: np.random.Generator) -> tuple[Vehicle, Load, Drop]:
+def fewer_wheels(test: VehicleTest, drop: Drop, load: Load, random: np.random.Generator) -> tuple[Vehicle, Load, Drop]:
     """Drop the front or the rear wheels only, whatever is stated; all where these are stated."""
     ways = [way for way in (WHEELS[:2], WHEELS[2:], WHEELS) if set(way) != set(drop.wheels)]
     return test.vehicle, load, replace(drop, wheels=ways[int(random.integers(len(ways)))])

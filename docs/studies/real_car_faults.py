@@ -15,7 +15,7 @@ from typing import Any, NamedTuple, cast
 from zlib import crc32
 
 import numpy as np
-from fleet import DropTest
+from fleet import VehicleTest
 from outcomes import INJURIES, read_back
 from pages import VERDICTS, arguments, figures, report_progress, run, table, write
 from real_campaigns import record
@@ -64,7 +64,7 @@ def try_fault(kind: str, seed: int, fault: str) -> Found | None:
     """Introduce a fault into the campaign of a car, and identify it."""
     ((campaign, truth),) = record([draw_test(kind, seed)])
     injury = INJURIES[fault]
-    test = cast("DropTest", SimpleNamespace(rate=RATE, noise=NOISE, rest=REST))
+    test = cast("VehicleTest", SimpleNamespace(rate=RATE, noise=NOISE, rest=REST))
     injured = injury.act(test, campaign, np.random.default_rng([seed, crc32(fault.encode())]))
     if injured is None:
         return None

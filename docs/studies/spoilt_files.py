@@ -7,17 +7,17 @@ from dataclasses import replace
 
 import numpy as np
 from campaigns import Real
-from fleet import DropTest
+from fleet import VehicleTest
 from injuries import Act, Injured, Injury, Lines
 from scipy.interpolate import CubicSpline
 
 import sprung
 
 
-def cells(how: Callable[[np.random.Generator, DropTest], Callable[[list[str]], list[str]]]) -> Act:
+def cells(how: Callable[[np.random.Generator, VehicleTest], Callable[[list[str]], list[str]]]) -> Act:
     """Change the cells of any one column in any one file."""
 
-    def act(test: DropTest, campaign: sprung.Campaign, random: np.random.Generator) -> Injured:
+    def act(test: VehicleTest, campaign: sprung.Campaign, random: np.random.Generator) -> Injured:
         drop, channel = int(random.integers(len(campaign.drops))), int(random.integers(len(campaign.sensors)))
         change = how(random, test)
 
@@ -40,7 +40,7 @@ def cells(how: Callable[[np.random.Generator, DropTest], Callable[[list[str]], l
 def gap(seconds: float | None, samples: int = 0) -> Act:
     """Leave cells empty during the motion."""
 
-    def how(random: np.random.Generator, test: DropTest) -> Callable[[list[str]], list[str]]:
+    def how(random: np.random.Generator, test: VehicleTest) -> Callable[[list[str]], list[str]]:
         length = samples if seconds is None else round(seconds * test.rate)
         start = int(random.uniform(test.rest + 0.3, test.rest + 2.5) * test.rate)
         return lambda column: [*column[:start], *([""] * length), *column[start + length :]]
@@ -48,7 +48,7 @@ def gap(seconds: float | None, samples: int = 0) -> Act:
     return cells(how)
 
 
-def column_gone(_: DropTest, campaign: sprung.Campaign, random: np.random.Generator) -> Injured:
+def column_gone(_: VehicleTest, campaign: sprung.Campaign, random: np.random.Generator) -> Injured:
     """Take one column out of one file."""
     drop, channel = int(random.integers(len(campaign.drops))), int(random.integers(len(campaign.sensors)))
     name = campaign.recordings[drop].name
@@ -58,23 +58,23 @@ def column_gone(_: DropTest, campaign: sprung.Campaign, random: np.random.Genera
     )
 
 
-def lines_of_one(change: Callable[[Lines, np.random.Generator, DropTest], Lines]) -> Act:
+def lines_of_one(change: Callable[[Lines, np.random.Generator, VehicleTest], Lines]) -> Act:
     """Change the lines below the head of any one file."""
 
-    def act(test: DropTest, campaign: sprung.Campaign, random: np.random.Generator) -> Injured:
+    def act(test: VehicleTest, campaign: sprung.Campaign, random: np.random.Generator) -> Injured:
         name = campaign.recordings[int(random.integers(len(campaign.drops)))].name
         return Injured(campaign, (name,), name, lambda lines: [lines[0], *change(lines[1:], random, test)])
 
     return act
 
 
-def jittered(lines: Lines, random: np.random.Generator, test: DropTest) -> Lines:
+def jittered(lines: Lines, random: np.random.Generator, test: VehicleTest) -> Lines:
     """Stamp every sample up to 30 % of a step early or late."""
     off = random.uniform(-0.3, 0.3, len(lines)) / test.rate
     return [[f"{float(line[0]) + by:.7f}", *line[1:]] for line, by in zip(lines, off.tolist(), strict=True)]
 
 
-def uneven(test: DropTest, campaign: sprung.Campaign, random: np.random.Generator) -> Injured:
+def uneven(test: VehicleTest, campaign: sprung.Campaign, random: np.random.Generator) -> Injured:
     """Take every sample up to 30 % of a step early or late, and stamp it rightly."""
     i = int(random.integers(len(campaign.drops)))
     recordings, exact = list(campaign.recordings), test.exact.recordings[i]
@@ -90,13 +90,13 @@ def uneven(test: DropTest, campaign: sprung.Campaign, random: np.random.Generato
     return Injured(campaign.with_recordings(recordings), (name,), name, rewrite)
 
 
-def lines_lost(lines: Lines, random: np.random.Generator, test: DropTest) -> Lines:
+def lines_lost(lines: Lines, random: np.random.Generator, test: VehicleTest) -> Lines:
     """Lose three lines during the motion."""
     lost = set(random.choice(np.arange(int((test.rest + 0.3) * test.rate), len(lines)), 3, replace=False).tolist())
     return [line for i, line in enumerate(lines) if i not in lost]
 
 
-def too_slow(lines: Lines, _: np.random.Generator, test: DropTest) -> Lines:
+def too_slow(lines: Lines, _: np.random.Generator, test: VehicleTest) -> Lines:
     """Keep 50 samples a second."""
     return lines[:: round(test.rate / 50)]
 
@@ -109,7 +109,7 @@ def just_after(random: np.random.Generator) -> float:
 def cut(seconds: Callable[[np.random.Generator], float], to_end: bool) -> Act:
     """Keep one recording only from so long after its release on, or only up to then."""
 
-    def act(test: DropTest, campaign: sprung.Campaign, random: np.random.Generator) -> Injured:
+    def act(test: VehicleTest, campaign: sprung.Campaign, random: np.random.Generator) -> Injured:
         i, at = int(random.integers(len(campaign.drops))), round((test.rest + seconds(random)) * test.rate)
         recordings = list(campaign.recordings)
         values: Real = recordings[i].values
@@ -119,7 +119,7 @@ def cut(seconds: Callable[[np.random.Generator], float], to_end: bool) -> Act:
     return act
 
 
-def copied(_: DropTest, campaign: sprung.Campaign, random: np.random.Generator) -> Injured:
+def copied(_: VehicleTest, campaign: sprung.Campaign, random: np.random.Generator) -> Injured:
     """Replace the recording of one drop by that of another."""
     one, other = random.choice(len(campaign.drops), 2, replace=False).tolist()
     recordings = list(campaign.recordings)
@@ -127,7 +127,7 @@ def copied(_: DropTest, campaign: sprung.Campaign, random: np.random.Generator) 
     return Injured(campaign.with_recordings(recordings), (recordings[one].name, recordings[other].name))
 
 
-def fast_clock(_: DropTest, campaign: sprung.Campaign, random: np.random.Generator) -> Injured:
+def fast_clock(_: VehicleTest, campaign: sprung.Campaign, random: np.random.Generator) -> Injured:
     """Let the clock of one recording run two to five percent fast or slow."""
     i = int(random.integers(len(campaign.drops)))
     factor = 1 + random.choice([-1.0, 1.0]) * random.uniform(0.02, 0.05)

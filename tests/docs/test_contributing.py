@@ -63,3 +63,19 @@ def test_the_stages_are_those_of_the_program() -> None:
 @pytest.mark.parametrize("path", sorted(set(re.findall(r"`((?:src|tests|docs|benchmarks)/[\w./-]+)`", TEXT))))
 def test_every_file_that_is_named_exists(path: str) -> None:
     assert (ROOT / path).exists()
+
+
+RECIPES = re.split(r"^### ", section("How to add"), flags=re.MULTILINE)[1:]
+
+
+@pytest.mark.parametrize("recipe", RECIPES, ids=lambda recipe: recipe.partition("\n")[0])
+def test_every_name_in_a_recipe_is_in_a_file_that_it_names(recipe: str) -> None:
+    prose = re.sub(r"```.*?```", "", recipe, flags=re.DOTALL)
+    named = [ROOT / path for path in re.findall(r"`((?:src|tests|docs)/[\w./-]+)`", prose)]
+    files = [*(path for path in named if path.is_file()), *(one for path in named for one in path.glob("*.py"))]
+    text = "\n".join(path.read_text(encoding="utf-8") for path in files)
+    quoted = {
+        word for name in re.findall(r"`([\w.]+)(?:\([^`]*\)|\[[^`]*\]|=\w+)?`", prose) for word in name.split(".")
+    }
+    names = {name for name in quoted if re.search(r"_|[a-z][A-Z]|^[A-Z]", name)}
+    assert sorted(name for name in names if not re.search(rf"\b{name}\b", text)) == []

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from campaigns import Real
-from fleet import FLEET, DropTest
+from fleet import FLEET, VehicleTest
 from injuries import Injured, Injury
 from mistakes import swapped_digits
 from outcomes import INJURIES, names_all, try_one
@@ -39,14 +39,14 @@ NOWHERE = {
 """The tests to which something cannot be done: without such sensors, without a load."""
 
 
-def spoil(name: str, test: DropTest = SMALL, seed: int = 0) -> tuple[sprung.Campaign, Injured]:
+def spoil(name: str, test: VehicleTest = SMALL, seed: int = 0) -> tuple[sprung.Campaign, Injured]:
     campaign = test.campaign(3)
     injured = INJURIES[name].act(test, campaign, np.random.default_rng(seed))
     assert injured is not None
     return campaign, injured
 
 
-def spoilt_channel(name: str, test: DropTest = SMALL, seed: int = 0) -> list[tuple[Real, Real]]:
+def spoilt_channel(name: str, test: VehicleTest = SMALL, seed: int = 0) -> list[tuple[Real, Real]]:
     """Return the damaged channel before and after, in every drop."""
     campaign, injured = spoil(name, test, seed)
     channel = [one.channel for one in campaign.sensors].index(injured.names[0])
@@ -65,7 +65,7 @@ def lines(recording: sprung.campaign.Recording) -> list[list[str]]:
     ids=[test.vehicle.name for test in FLEET],
 )
 @pytest.mark.slow
-def test_every_vehicle_of_the_fleet_is_found_and_accepted(test: DropTest) -> None:
+def test_every_vehicle_of_the_fleet_is_found_and_accepted(test: VehicleTest) -> None:
     assert 5 <= len(test.drops) <= 10
     assert 200 <= test.rate <= 1000
     result = sprung.identify(test.campaign(1))
@@ -255,7 +255,7 @@ def test_what_came_of_it() -> None:
     assert not gone.put_right
     assert try_one(2, 0, INJURIES["sign, DC"]) is None
 
-    def all_cut(_: DropTest, campaign: sprung.Campaign, __: np.random.Generator) -> Injured:
+    def all_cut(_: VehicleTest, campaign: sprung.Campaign, __: np.random.Generator) -> Injured:
         short = tuple(replace(one, values=one.values[:, :50]) for one in campaign.recordings)
         return Injured(campaign.with_recordings(short), (short[0].name,))
 

@@ -72,3 +72,8 @@ def test_every_term_has_a_definition() -> None:
     terms = glossary_terms()
     assert len(terms) > 100
     assert {"score test", "wald test", "overdispersion", "birge ratio", "warp", "tramp", "hop"} <= terms
+
+
+def test_fault_codes_are_in_order() -> None:
+    codes = re.findall(r"^\| `([a-z-]+)` \|", GLOSSARY.split("| code | fault |")[1].split("\n\n")[0], re.MULTILINE)
+    assert codes == sorted(codes)

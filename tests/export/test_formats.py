@@ -10,8 +10,10 @@ import pytest
 import sprung
 from sprung import export
 from sprung.errors import InputError
-from sprung.export import ExportOptions
+from sprung.export import ExportOptions, commonroad_parameters, mujoco_model
+from sprung.export.requests import TERM_NAMES
 from sprung.results import Result
+from sprung.vehicle import EXTRAS
 
 SAVED = Path(__file__).resolve().parents[1] / "report"
 
@@ -100,3 +102,17 @@ def test_notes_are_added(result: Result) -> None:
     file = export.markdown(result).with_notes("One.", "Two.")
     assert file.notes == ("One.", "Two.")
     assert replace(file, notes=()) == export.markdown(result)
+
+
+def test_every_term_has_words() -> None:
+    assert TERM_NAMES.keys() == {*EXTRAS}
+
+
+def test_every_term_is_held_by_a_format_or_said_to_be_lacking() -> None:
+    """A new term joins what the format holds, here, or what stands for it, there."""
+    in_mjcf = {
+        *("anti-roll", "tyre-damping", "gravity", "asymmetry", "rigid-axle", "engine", "occupants", "seat-load"),
+        *("rebound", "damper-curve", "rebound-knee", "second-knee", "third-knee", "progressive", "bump-stop"),
+    }
+    assert {*EXTRAS} - commonroad_parameters._LACKING.keys() == {"anti-roll"}
+    assert {*EXTRAS} - mujoco_model._LACKING.keys() == in_mjcf

@@ -278,6 +278,14 @@ def slower(campaign: sprung.Campaign) -> sprung.Campaign:
     return campaign.with_recordings(recordings)
 
 
+def copied(channel: str, other: str, noise: float) -> Callable[[Real], None]:
+    def change(values: Real) -> None:
+        added = noise * np.random.default_rng(1).standard_normal(values.shape[1])
+        values[CHANNELS.index(channel)] = values[CHANNELS.index(other)] + added
+
+    return change
+
+
 def silent(values: Real) -> None:
     values[2] = values[2, 0] + 0.02 * np.random.default_rng(1).standard_normal(values.shape[1])
 
@@ -287,6 +295,7 @@ LEFT_OUT = {
     "passenger": (happened("front.csv", more=[PASSENGER]), "unlike-repeats", "front.csv"),
     "clock": (slower, "clock", "laden_rear.csv"),
     "silence": (samples(silent, "bounce.csv"), "flat", "bounce.csv: body_rl"),
+    "copy": (samples(copied("body_fl", "body_rr", 0.0), "bounce.csv"), "copy", "bounce.csv: body_fl"),
 }
 
 
@@ -296,9 +305,22 @@ def test_it_is_left_out_and_named(name: str) -> None:
     result = sprung.identify(spoil(CLEAN))
     assert said(result) == [(code, where)]
     (drop,) = (drop for drop in result.drops if drop.file in where)
-    assert (drop.start is None) == (name != "silence")  # of which only the channel is gone
+    assert (drop.start is None) == (": " not in where)  # or only a channel is gone
     assert result.verdict.state == "accept"
     assert distance(result) < 4.0  # a sixth of the records fewer
+
+
+@pytest.mark.parametrize(
+    ("channel", "other", "noise"),
+    [("body_fl", "body_rr", 0.005), ("wheel_fl", "wheel_fr", 0.0), ("wheel_rl", "body_rl", 0.0)],
+)
+def test_a_channel_with_the_samples_of_another_one_is_left_out(channel: str, other: str, noise: float) -> None:
+    result = sprung.identify(samples(copied(channel, other, noise))(CLEAN))
+    (fault,) = result.faults
+    assert (fault.code, fault.where) == ("copy", channel)
+    assert fault.what == f"the channel has the samples of {other}; it is left out"
+    assert result.verdict.state == "accept"
+    assert distance(result) < 4.0  # an eighth of the records fewer
 
 
 @pytest.mark.long

@@ -2,10 +2,12 @@ from __future__ import annotations
 
 import os
 from importlib.metadata import EntryPoint
+from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
+from every_format import WAYS, Signals
 
 from sprung.errors import InputError
 from sprung.formats import SampleTable, formats, read_table, registry
@@ -13,6 +15,8 @@ from sprung.formats.sample_store import store_in_memory
 
 if TYPE_CHECKING:
     from pathlib import Path
+
+OWN = {"csv", "excel", "hdf5", "iso_mme", "lvm", "mat", "mdf", "parquet", "rpc", "tdms", "uff", "wav"}
 
 
 class Greedy:
@@ -39,8 +43,23 @@ def installed(monkeypatch: pytest.MonkeyPatch, *entries: object) -> None:
 
 def test_the_formats_of_this_package(monkeypatch: pytest.MonkeyPatch) -> None:
     installed(monkeypatch)
-    own = ["csv", "excel", "hdf5", "iso_mme", "lvm", "mat", "mdf", "parquet", "rpc", "tdms", "uff", "wav"]
-    assert list(formats()) == own
+    assert {*formats()} == OWN
+
+
+@pytest.mark.skipif(not all(find_spec(way.needs) for way in WAYS.values() if way.needs), reason="needs every library")
+def test_a_campaign_is_identified_in_every_format(tmp_path: Path) -> None:
+    """Every format is among the ways of the study; workbooks are written by hand in their own test."""
+    signals = Signals(("a", "b"), np.random.default_rng(0).standard_normal((2, 400)), 400.0)
+    written = [way.write(signals, tmp_path / f"{number}") for number, way in enumerate(WAYS.values())]
+    heads = {path: path.read_bytes()[: registry.HEAD] for path in written}
+    claimed = {name for name, one in formats().items() if any(one.claims(*each) for each in heads.items())}
+    assert claimed == OWN - {"excel"}
+
+
+def test_an_empty_file_of_no_format_is_called_empty(tmp_path: Path) -> None:
+    (tmp_path / "a.bin").touch()
+    with pytest.raises(InputError, match="found an empty file"):
+        read_table(tmp_path / "a.bin")
 
 
 def test_a_format_that_another_package_registers_again_counts_once(

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
-from every_format import WAYS, ModelSearch, Signals, wav24
+from every_format import WAYS, Signals, WritingMethod, wav24
 
 import sprung
 from sprung.simulation import default_sensors
@@ -46,7 +46,7 @@ def in_g(recording: sprung.campaign.Recording) -> Signals:
     return Signals(recording.channels, recording.values / STANDARD_GRAVITY, recording.rate)
 
 
-def written(campaign: sprung.Campaign, folder: Path, way: ModelSearch) -> Path:
+def written(campaign: sprung.Campaign, folder: Path, way: WritingMethod) -> Path:
     """Write a campaign whose recordings are in some format."""
     text = sprung.write(campaign, folder).read_text(encoding="utf-8")
     for recording in campaign.recordings:
@@ -108,7 +108,7 @@ def test_the_same_parameters_from_24_bits(tmp_path: Path) -> None:
     drops = [{**drop, "height": 0.002} for drop in DROPS]
     known = {"total_mass": TABLE_1_CAR.total_mass}
     campaign = sprung.simulate(TABLE_1_CAR, sensors=sensors, drops=drops, known=known, noise=NOISE, seed=3)
-    read = sprung.read(written(campaign, tmp_path, ModelSearch(wav24, nameless=True)))
+    read = sprung.read(written(campaign, tmp_path, WritingMethod(wav24, nameless=True)))
     off = off_by(read, campaign)
     assert off <= STANDARD_GRAVITY * 2.0**-24 * (1 + 1e-9)
     check(sprung.identify(read), sprung.identify(campaign), off / NOISE)

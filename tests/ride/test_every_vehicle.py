@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from sprung.ride import ride_numbers
-from sprung.vehicle import TABLE_1_CAR, Item, Load, Vehicle
+from sprung.vehicle import EXTRAS, TABLE_1_CAR, Item, Load, Vehicle, parameters_of_term
 
 TERMS = {
     "anti-roll": {"k_af": 9000.0, "k_ar": 3000.0},
@@ -23,7 +23,12 @@ TERMS = {
     "uneven occupants": {"m_o": 160.0, "k_o": 9e4, "c_o": 2500.0, "x_o": -1.5, "d_mo": 10.0, "d_ko": -6e3, "d_co": 200.0},
     "gravity": {"w_h": 4000.0},
     "friction": {"F_f": 60.0, "F_r": 60.0, "s_f": 1.5e5, "s_r": 1.5e5},
+    "uneven friction": {"F_f": 60.0, "F_r": 60.0, "s_f": 1.5e5, "s_r": 1.5e5, "d_Ff": 15.0, "d_Fr": -10.0},
     "rebound": {"r_f": 2.0, "r_r": 2.0},
+    "every knee": {
+        "v_kf": 0.1, "v_kr": 0.1, "q_f": 0.5, "q_r": 0.5, "b_kf": 1.4, "b_kr": 1.4, "b_qf": 0.8, "b_qr": 0.8,
+        "v_2f": 0.3, "v_2r": 0.3, "q_2f": 0.7, "q_2r": 0.7, "v_3f": 0.6, "v_3r": 0.6, "q_3f": 0.9, "q_3r": 0.9,
+    },
     "damper curve": {"v_kf": 0.1, "v_kr": 0.1, "q_f": 0.5, "q_r": 0.5, "w_kf": 0.03, "w_kr": 0.03},
     "progressive": {"p_f": 3.0, "p_r": 3.0},
     "air": {"e_f": 4.0, "e_r": 4.0},
@@ -41,6 +46,11 @@ LONG = "everything that rubs"
 NAMES = [pytest.param(name, marks=pytest.mark.long) if name == LONG else name for name in TERMS]
 
 BOOT = Load(name="boot", items=(Item(mass=120.0, position=(-2.4, 0.0, 0.6)),))
+
+
+def test_every_term_is_among_them() -> None:
+    stated = {name for values in TERMS.values() for name in values}
+    assert [term for term in EXTRAS if not stated & {*parameters_of_term(term, "shared")}] == ["seat-load"]
 
 
 @pytest.mark.parametrize("load", [None, BOOT], ids=["empty", "loaded"])

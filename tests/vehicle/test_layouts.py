@@ -9,14 +9,18 @@ from sprung.simulation import static_wheel_loads
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import (
     LAYOUTS,
+    LINEAR_EXTRAS,
+    REFINED,
     STATIONS,
     TABLE_1_CAR,
     Item,
     Layout,
+    LinearModel,
     Load,
     Vehicle,
     coordinates,
     layout_of,
+    linear_elements,
     parameter_name,
     parameter_names,
     parameters_of_term,
@@ -112,6 +116,20 @@ def test_every_term_of_a_layout_has_parameters_there(layout: Layout) -> None:
         assert set(parameters_of_term(term, "shared", layout)) <= set(names)
         assert layout_of(names) == layout
         assert coordinates(names)[: len(layout.coordinates)] == layout.coordinates
+
+
+@LAYOUT
+def test_every_parameter_of_a_term_changes_the_equations_of_motion(layout: Layout) -> None:
+    """But for those of loads on seats, which an empty vehicle has not, and of the place of an axis that sensors alone show."""
+    for term in {*LINEAR_EXTRAS} & {*terms_of(layout)} - {"seat-load"}:
+        extras = (term, REFINED[term]) if term in REFINED else (term,)
+        names = parameter_names("shared", extras, layout)
+        model = LinearModel.of(linear_elements("shared", extras, wheelbase=2.5, layout=layout), names)
+        slopes = np.sum(
+            [np.abs(own).sum(axis=(1, 2)) for own in model.slopes(np.linspace(1.0, 2.0, len(names)))], axis=0
+        )
+        idle = {name for name, slope in zip(names, slopes, strict=True) if slope == 0}
+        assert idle <= {"u_w", "e_w"}, term
 
 
 def test_parts_have_the_terms_that_make_sense_there() -> None:

@@ -46,7 +46,7 @@ def check(parsed: ParsedFile[CampaignFile], problems: Problems) -> None:
 
     Parameters
     ----------
-    draft
+    parsed
         What was understood of the file.
     problems
         Takes up what is wrong.
@@ -67,7 +67,7 @@ def check_quantities(parsed: ParsedFile[CampaignFile], problems: Problems) -> No
 
     Parameters
     ----------
-    draft
+    parsed
         What was understood of the file.
     problems
         Takes up what is wrong.
@@ -139,7 +139,7 @@ def check_body_sensors(parsed: ParsedFile[CampaignFile], problems: Problems) -> 
 
     Parameters
     ----------
-    draft
+    parsed
         What was understood of the file.
     problems
         Takes up what is wrong.
@@ -257,17 +257,17 @@ def _check_known(parsed: ParsedFile[CampaignFile], problems: Problems) -> dict[s
             do = did_you_mean(name, sorted(all_names(model)))
             problems.add(where, f"'{name}'", f'a quantity of a vehicle with model = "{model}"', do)
             continue
-        unit, describe_key, positive, signed = "kg", name.replace("_", " "), True, False
+        unit, meaning, positive, signed = "kg", name.replace("_", " "), True, False
         if name in PARAMETERS:
             about = PARAMETERS[name]
-            unit, describe_key, positive, signed = about.unit, about.meaning, about.positive, about.signed
+            unit, meaning, positive, signed = about.unit, about.meaning, about.positive, about.signed
         limits = explain_implausible(name, measured.value)
         if (measured.value < 0 and not signed) or (measured.value < SMALLEST and positive):
             sign = "positive" if positive else "not negative"
-            problems.add(where, f"{measured.value:g}", f"a {sign} number: the {describe_key} in {unit}", "Correct it.")
+            problems.add(where, f"{measured.value:g}", f"a {sign} number: the {meaning} in {unit}", "Correct it.")
         elif limits is not None:
             expected, do = limits
-            problems.add(where, f"{measured.value:g}", f"{expected}: the {describe_key}", do)
+            problems.add(where, f"{measured.value:g}", f"{expected}: the {meaning}", do)
         else:
             known[name] = measured.known
     wheelbase = parsed.file.vehicle.wheelbase

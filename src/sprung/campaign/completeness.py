@@ -69,7 +69,7 @@ def find_missing_entries(parsed: ParsedFile[CampaignFile]) -> Iterator[MissingEn
 
     Parameters
     ----------
-    draft
+    parsed
         What was understood of the file.
 
     Yields

@@ -41,7 +41,7 @@ class ParsedFile(Generic[File_co]):
         What is left of it without its faulty entries.
     lost
         The entries left out, such as ("sensor", 2).
-    gaps
+    placeholders
         The gaps that are still to be filled, by their place: each as the problem that it is for an identification. What such a
         place holds counts as not known.
     """

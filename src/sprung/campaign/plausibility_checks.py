@@ -46,7 +46,7 @@ def check_sizes(parsed: ParsedFile[CampaignFile], problems: Problems) -> None:
 
     Parameters
     ----------
-    draft
+    parsed
         What was understood of the file.
     problems
         Takes up what no vehicle has.
@@ -149,7 +149,7 @@ def check_relations(parsed: ParsedFile[CampaignFile], known: Mapping[str, KnownV
 
     Parameters
     ----------
-    draft
+    parsed
         What was understood of the file.
     known
         What is known and possible by itself, the wheelbase too.

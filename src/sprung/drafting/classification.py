@@ -222,10 +222,10 @@ def _find_end(moved: Real, slow: Real, noise: Real, release: int, landing: int, 
     disturbed[:, : int((landing - release) / width + _HOPPING / bin_)] = False
     # Free vibration ends where at least two channels are disturbed at about the same time, or one is for longer than a spike.
     near = maximum_filter1d(disturbed.astype(np.int8), 9, axis=1, mode="constant")
-    group_by_drop = (near.sum(axis=0) >= 2) | (
+    is_event = (near.sum(axis=0) >= 2) | (
         uniform_filter1d(disturbed.astype(float), 3, axis=1, mode="constant") > 0.9
     ).any(axis=0)
-    events = np.flatnonzero(group_by_drop)
+    events = np.flatnonzero(is_event)
     last = release + int(AFTER * rate)
     why_end = f"{AFTER:g} s after the release every vehicle is at rest"
     if events.size:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from sprung.errors import Fault
 from sprung.estimation import FitResult
 from sprung.faults.candidate_fit import CandidateFit
-from sprung.faults.channel import CHANNEL_HYPOTHESES, flat
+from sprung.faults.channel import CHANNEL_HYPOTHESES, channel_hypotheses
 from sprung.faults.channel.hypothesis import ChannelHypothesis, Numbers
 from sprung.faults.channel_prediction import ChannelPrediction
 from sprung.faults.consistency import NEGLIGIBLE
@@ -109,16 +109,11 @@ class ChannelDeletion:
     def hypotheses(self) -> Iterator[Hypothesis]:
         """Yield what may be wrong with the channel, each with the residuals that it predicts."""
         noise = float(self.base.noise.level[self.channel])
-        silent = flat(self.prediction, noise)
-        if silent is not None:
-            yield self._left_out(silent)
-            return
-        for kind in CHANNEL_HYPOTHESES:
-            for hypothesis in kind(self.prediction):
-                if hypothesis.correction is None:
-                    yield self._left_out(hypothesis)
-                elif self._explains_much(hypothesis) and _is_relevant(hypothesis):
-                    yield ChannelCorrection.of(self, hypothesis, hypothesis.correction, hypothesis.numbers)
+        for hypothesis in channel_hypotheses(self.prediction, noise):
+            if hypothesis.correction is None:
+                yield self._left_out(hypothesis)
+            elif self._explains_much(hypothesis) and _is_relevant(hypothesis):
+                yield ChannelCorrection.of(self, hypothesis, hypothesis.correction, hypothesis.numbers)
 
     def _explains_much(self, hypothesis: ChannelHypothesis) -> bool:
         """Whether a hypothesis leaves little of what the channel reads beyond its noise."""

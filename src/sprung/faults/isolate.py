@@ -165,19 +165,19 @@ def _groups(
         yield _of_parts(base, _deletions(base, progress), progress)
         return
     limit = deletions[0].limit if deletions else base.table
-    is_alone = limit.is_explained(base.noise)
-    if is_alone:
+    one_explains = limit.is_explained(base.noise)
+    if one_explains:
         yield _of_parts(base, deletions, progress)
     progress(Step("testing for exchanged loads and channels"))
     exchanges = _with_refined(base, [*exchanged_loads(base), *exchanged_channels(base)])
     is_likelier = min((one.score() for one in exchanges), default=np.inf) < limit.cost
     anew = int(len({decay.load for decay in base.decays}) == 2)
-    if is_likelier or is_alone:
+    if is_likelier or one_explains:
         yield exchanges, anew
     # Where the body twists, each of its sensors contradicts the others: no part is to be examined.
-    if not is_alone and torsion_test(base) is None:
+    if not one_explains and torsion_test(base) is None:
         yield _of_parts(base, deletions, progress)
-    if not (is_likelier or is_alone):
+    if not (is_likelier or one_explains):
         yield exchanges, anew
 
 

@@ -76,7 +76,7 @@ class Column:
     ----------
     name
         As written in the file.
-    otherwise
+    fallback_name
         Its name where another channel has the same name, or where it has none.
     unit
         Unit stated in the file; None without one.
@@ -87,7 +87,7 @@ class Column:
     """
 
     name: str
-    otherwise: str
+    fallback_name: str
     unit: str | None
     clock: ChannelClock
     samples: Samples | None
@@ -249,7 +249,7 @@ def _names(columns: Sequence[Column]) -> dict[Column, str]:
     names: dict[Column, str] = {}
     taken: set[str] = set()
     for column in columns:
-        name = column.name if column.name and often[column.name] == 1 else column.otherwise
+        name = column.name if column.name and often[column.name] == 1 else column.fallback_name
         own, number = name, 1
         while own in taken or (own != column.name and often[own]):
             number += 1

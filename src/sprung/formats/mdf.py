@@ -61,7 +61,7 @@ class MdfFormat:
                     found = list(_columns(measurement, index, clock, path))
                     columns += found
                     if found and clock is None:
-                        timeless += [f"{column.otherwise}" for column in found]
+                        timeless += [f"{column.fallback_name}" for column in found]
             columns = [column for column in columns if column.clock.count]
             notes = (f"left out, as they have no time: {', '.join(timeless)}",) if timeless else ()
             return assemble_table(columns, file, largest, notes)

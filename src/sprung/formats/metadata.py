@@ -107,14 +107,12 @@ class MetadataScope:
         """Return the unit stated for one vector, as ``acc_unit`` or ``units.acc`` state it for ``acc``; None without one."""
         name = normalise_name(name)
         for text in self._texts:
-            by_name = len(text.path) > 1 and matches_any(text.path[-2], UNITS) and normalise_name(text.path[-1]) == name
-            join_samples = normalise_name(text.path[-1]) in {
-                f"{name}unit",
-                f"{name}units",
-                f"unit{name}",
-                f"units{name}",
-            }
-            if (by_name or join_samples) and len(text.words) == 1 and self.nearest([text], path):
+            by_group = (
+                len(text.path) > 1 and matches_any(text.path[-2], UNITS) and normalise_name(text.path[-1]) == name
+            )
+            own = normalise_name(text.path[-1])
+            by_own_name = own in {f"{name}unit", f"{name}units", f"unit{name}", f"units{name}"}
+            if (by_group or by_own_name) and len(text.words) == 1 and self.nearest([text], path):
                 return text.words[0].strip() or None
         return None
 

@@ -111,6 +111,8 @@ def read_table(path: Path, others: Collection[str] = ()) -> SampleTable:
     match claiming:
         case [only]:
             return known[only].read(path)
+        case [] if not head:
+            found, do = "an empty file", "Export the recording again."
         case []:
             found, do = "a file of no known format", "Export the recording in one of these formats."
         case _:

@@ -21,7 +21,7 @@ BUDGET = 1 << 25
 """Bytes of the pieces in which a whole is read."""
 
 
-def _nothing_spoilt(column: int, first: int, last: int) -> None:
+def _find_none(column: int, first: int, last: int) -> None:
     """Return None: every sample is a number, or missing."""
 
 
@@ -36,14 +36,14 @@ class Store:
     read
         Gives samples, NaN where there is no number. Nothing of the file need be open between two calls. Raises an
         InputError if the file is damaged there.
-    spoilt
+    find_non_number
         ``find_non_number(column, first, last)``: what stands in that part of a column that is no number; None if nothing does.
     """
 
     width: int
     length: int
     read: Read
-    find_non_number: Callable[[int, int, int], Problem | None] = _nothing_spoilt
+    find_non_number: Callable[[int, int, int], Problem | None] = _find_none
 
 
 class Samples(NamedTuple):

@@ -46,6 +46,8 @@ class Cells:
         Of all columns, line by line; NaN where there is none.
     count
         How many lines held samples.
+    missing
+        How many cells lines had too few, all together.
     text
         By column, what is neither a number nor a clock time: the line and text of the first such cell, and how many.
     clock_cells

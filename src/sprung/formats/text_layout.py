@@ -245,14 +245,14 @@ def _names(line: str, delimiter: str, width: int) -> tuple[str, ...]:
     """Return the cells of a header line; in a table separated by spaces, a unit in brackets belongs to the name before it."""
     names = split_cells(line, delimiter)
     if delimiter == " " and len(names) != width:
-        join_samples: list[str] = []
+        joined: list[str] = []
         for name in names:
-            if join_samples and name[:1] in ("[", "("):
-                join_samples[-1] += f" {name}"
+            if joined and name[:1] in ("[", "("):
+                joined[-1] += f" {name}"
             else:
-                join_samples.append(name)
+                joined.append(name)
         apart = re.split(r"[ \t]{2,}", line.strip())
-        names = apart if len(apart) == width else join_samples
+        names = apart if len(apart) == width else joined
     while len(names) > 1 and not names[-1]:
         names.pop()
     return tuple(names)

@@ -122,7 +122,7 @@ def find_vector_clock(vectors: Sequence[Vector], content: Content, scope: Metada
         All vectors, in the file's order.
     content
         What else the file holds.
-    belonging
+    scope
         Scopes of its texts and numbers.
     file
         Its name.

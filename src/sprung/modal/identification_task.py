@@ -38,7 +38,7 @@ class IdentificationTask:
     ----------
     decays
         The records.
-    span
+    subspace
         Signal subspace of the decimated records.
     order
         Number of poles.

@@ -72,7 +72,7 @@ def fit_by_criterion(decays: Decays, subspace: SignalSubspace, most: int = MOST_
     ----------
     decays
         The records.
-    span
+    subspace
         Of them.
     most
         Poles at the most.

@@ -26,7 +26,7 @@ def fit_shapes(decimated: DecimatedRecords, exponent: Complex) -> Poles:
 
     Parameters
     ----------
-    thinned
+    decimated
         The records.
     exponent
         λ per sample of the records as they were, of one of each conjugate pair, none twice; shape (pole,).

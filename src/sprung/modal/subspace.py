@@ -36,7 +36,7 @@ class SignalSubspace:
 
     Attributes
     ----------
-    thinned
+    decimated
         The records.
     left
         Orthonormal, shape (block row · channel, direction).
@@ -88,7 +88,7 @@ def realise_poles(observability: Real, decimated: DecimatedRecords, block: int |
     ----------
     observability
         Shape (block row · channel, order).
-    thinned
+    decimated
         The records.
     block
         Rows in a block row, the channels first; the number of channels unless given.
@@ -107,7 +107,7 @@ def poles_of_transition(transition: Real, observation: Real, decimated: Decimate
         Of the state over a lag, shape (order, order).
     observation
         Observation matrix of the decimated channels, shape (channel, order).
-    thinned
+    decimated
         The records.
     """
     z, vectors = np.linalg.eig(transition)
@@ -123,7 +123,7 @@ def poles_of_recursion(z: Complex, shapes: Complex, decimated: DecimatedRecords,
         e^λ over so many samples of the decimated records, with conjugates; shape (pole,).
     shapes
         At the decimated channels, shape (channel, pole).
-    thinned
+    decimated
         The records.
     step
         How many.

@@ -4,7 +4,10 @@ A hypothesis predicts the channel from the motion of a vehicle that was fitted w
 place, a corner frequency) follow from the records in closed form, and its residual tells how likely it is.
 """
 
+from collections.abc import Iterator
+
 from sprung.faults.channel.contradiction import contradiction
+from sprung.faults.channel.copy import copy
 from sprung.faults.channel.delay import delay
 from sprung.faults.channel.drift import drift
 from sprung.faults.channel.flat import flat
@@ -16,8 +19,32 @@ from sprung.faults.channel.position import position
 from sprung.faults.channel.sign import sign
 from sprung.faults.channel.unit import unit
 from sprung.faults.channel.wheel import wheel
+from sprung.faults.channel_prediction import ChannelPrediction
 
-CHANNEL_HYPOTHESES = (sign, unit, gain, delay, low_pass, high_pass, wheel, position, drift, contradiction)
-"""Each takes a `ChannelPrediction` and yields hypotheses; a channel that is `flat` is nothing else."""
+CHANNEL_HYPOTHESES = (sign, unit, gain, delay, low_pass, high_pass, wheel, position, drift, copy, contradiction)
+"""Each takes a `ChannelPrediction` and yields hypotheses."""
 
-__all__ = ["CHANNEL_HYPOTHESES", "ChannelHypothesis", "Numbers", "flat"]
+
+def channel_hypotheses(prediction: ChannelPrediction, noise: float) -> Iterator[ChannelHypothesis]:
+    """Yield all hypotheses about a channel.
+
+    Parameters
+    ----------
+    prediction
+        Of the channel.
+    noise
+        Of it at rest, m/s².
+
+    Yields
+    ------
+    ChannelHypothesis
+        Of a channel that shows no motion, that it is flat, or holds the samples of another one: no number follows from it.
+    """
+    silent = flat(prediction, noise)
+    if silent is not None:
+        yield silent
+    for hypotheses in CHANNEL_HYPOTHESES if silent is None else (copy,):
+        yield from hypotheses(prediction)
+
+
+__all__ = ["CHANNEL_HYPOTHESES", "ChannelHypothesis", "Numbers", "channel_hypotheses"]

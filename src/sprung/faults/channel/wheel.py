@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from sprung.errors import Fault
-from sprung.faults.channel.hypothesis import ChannelHypothesis, stated_place
+from sprung.faults.channel.hypothesis import ChannelHypothesis, Real, stated_place
 from sprung.faults.channel_prediction import ChannelPrediction
 from sprung.faults.correction import Correction, describe_sensor
 
@@ -29,5 +29,5 @@ def wheel(prediction: ChannelPrediction) -> Iterator[ChannelHypothesis]:
         yield _on_wheel(fault, residual, describe_sensor(prediction.channel, sensor))
 
 
-def _on_wheel(fault: Fault, residual, correction: Correction) -> ChannelHypothesis:  # type: ignore[no-untyped-def]
+def _on_wheel(fault: Fault, residual: Real, correction: Correction) -> ChannelHypothesis:
     return ChannelHypothesis("wrong-wheel", lambda *_: fault, lambda: ((), residual), lambda _: correction)

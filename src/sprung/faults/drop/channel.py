@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.faults.channel import CHANNEL_HYPOTHESES, flat
+from sprung.faults.channel import channel_hypotheses
 from sprung.faults.channel.hypothesis import ChannelHypothesis
 from sprung.faults.channel_prediction import ChannelPrediction
 from sprung.faults.correction import mask_channel
@@ -32,7 +32,8 @@ def channel_of_drop(deletion: DropDeletion) -> Iterator[Hypothesis]:
         table = deletion.table(residual, counts)
         if table.is_explained(noise):
             prediction = ChannelPrediction(candidate, channel, [deletion.decay], state[None])
-            yield from _explanations(deletion, prediction, table, float(noise.level[channel]))
+            for hypothesis in channel_hypotheses(prediction, float(noise.level[channel])):
+                yield _left_out(deletion, prediction, table, hypothesis)
 
 
 def without_channel(decay: FreeDecay, channel: int) -> FreeDecay:
@@ -40,18 +41,6 @@ def without_channel(decay: FreeDecay, channel: int) -> FreeDecay:
     values = decay.values.copy()
     values[channel] = np.nan
     return replace(decay, values=values)
-
-
-def _explanations(
-    deletion: DropDeletion, prediction: ChannelPrediction, table: ResidualTable, noise: float
-) -> Iterator[Hypothesis]:
-    silent = flat(prediction, noise)
-    if silent is not None:
-        yield _left_out(deletion, prediction, table, silent)
-        return
-    for hypotheses in CHANNEL_HYPOTHESES:
-        for hypothesis in hypotheses(prediction):
-            yield _left_out(deletion, prediction, table, hypothesis)
 
 
 def _left_out(

@@ -23,7 +23,7 @@ class Axis:
         Its ends.
     log
         Whether it is logarithmic.
-    falling
+    descending
         Whether it runs from high to low.
     ticks
         Values and their labels; empty for round ones.

@@ -63,7 +63,7 @@ def compose(title: str, description: str, shapes: Shapes, marks: Marks) -> Drawi
 
     Parameters
     ----------
-    title, described
+    title, description
         Of the drawing.
     shapes
         Draws everything but sensors and loads.
