@@ -25,6 +25,9 @@ HIGHEST_ORDER = 40
 _LEAST_ORDERS = 4
 """Orders at which a pole must be present, however late it appears."""
 
+_DIED_AWAY = 10.0
+"""Factor by which a mode has decayed in the block row at the latest at which its amplitude is compared with that at the first."""
+
 
 @shown
 @dataclass(frozen=True)
@@ -65,7 +68,8 @@ class DiagramPole:
     stable
         Whether the order before has the same pole.
     coherence
-        Extended modal amplitude coherence: how well its amplitude at the first block row predicts that at the last.
+        Extended modal amplitude coherence: how well its amplitude at the first block row predicts that at the last, or at the
+        one until which it has decayed to a tenth.
     collinearity
         Modal phase collinearity of its shape.
     """
@@ -187,11 +191,14 @@ def _poles(subspace: SignalSubspace, order: int, rate: float) -> list[DiagramPol
     seen = poles.shapes / subspace.decimated.scale[:, None]
     # The contributions of each mode to all block rows of the observability matrix.
     wide = np.vstack([seen * np.exp(poles.exponent * lag * i) for i in range(block + 1)])
-    last = wide[-channels:]
     parts = observability @ (observability.T @ wide)
+    # Of a mode that has died away before, the last row tells nothing.
+    decay = np.maximum(-poles.exponent.real * lag, np.finfo(float).tiny)
+    last = np.clip(np.floor(np.log(_DIED_AWAY) / decay), 1, block).astype(np.int64)
     found = []
     for j in range(poles.count):
-        there, predicted = parts[-channels:, j], last[:, j]
+        row = slice(last[j] * channels, (last[j] + 1) * channels)
+        there, predicted = parts[row, j], wide[row, j]
         size = float(np.linalg.norm(there) * np.linalg.norm(predicted))
         along = abs(complex(there.conj() @ predicted)) / size if size > 0 else 0.0
         ratio = float(np.linalg.norm(there)) / max(float(np.linalg.norm(predicted)), 1e-300)
