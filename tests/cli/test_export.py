@@ -93,6 +93,23 @@ def test_a_file_of_the_users_is_kept(results: Path, tmp_path: Path) -> None:
     assert run("export", results, "--to", "markdown", "-o", target, "--force").status == 0
 
 
+@pytest.mark.parametrize(
+    ("to", "name", "words"),
+    [
+        ("modelica", "results.json", "found the ending .json; expected the ending .mo"),
+        ("fmu", "campaign.toml", "found the ending .toml; expected the ending .fmu"),
+        ("draws", "empty_bounce.csv", "found the name of a recording of this campaign"),
+        ("draws", "d.xlsx", "expected the ending .csv"),
+    ],
+)
+def test_nothing_of_another_kind_is_replaced(to: str, name: str, words: str, results: Path) -> None:
+    before = (results / "results.json").read_bytes()
+    said = run("export", results, "--to", to, "-o", results / name)
+    assert said.status == 2
+    assert words in " ".join(said.err.split())
+    assert (results / "results.json").read_bytes() == before
+
+
 def test_no_results_is_bad_input(tmp_path: Path) -> None:
     said = run("export", tmp_path, "--to", "fmu")
     assert said.status == 2

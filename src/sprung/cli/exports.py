@@ -11,6 +11,7 @@ import sprung
 from sprung.cli import completion
 from sprung.cli.app import Force, Json, app
 from sprung.cli.output import REJECTED, complain, say, say_json, working
+from sprung.errors import InputError, Problem
 
 
 @app.command(epilog="Example: [bold]sprung export results --to fmu -o car.fmu[/bold]")
@@ -80,6 +81,10 @@ def export(
         )
         file = sprung.export.export(found, to, options)
         folder = results.parent if results.suffix == ".json" else results
+        if output is not None and output.name in {drop.file for drop in found.drops}:
+            # Simulated recordings are files that sprung wrote, too, and might be replaced otherwise.
+            what = "the name of a recording of this campaign"
+            raise InputError([Problem(str(output), what, "a name for the export", "Choose another name.")])
         written = file.save(folder if output is None else output, overwrite=force)
     if as_json:
         say_json({"format": to, "written": str(written), "notes": list(file.notes)})

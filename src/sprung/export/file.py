@@ -6,7 +6,16 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from sprung.display import shown
+from sprung.errors import InputError, Problem
 from sprung.files import atomic_write
+
+_OF_OTHER_KINDS = frozenset(
+    {
+        *(".csv", ".parquet", ".mat", ".mo", ".xml", ".fmu", ".yaml", ".md", ".tex"),
+        *(".json", ".toml", ".npz", ".html", ".pdf", ".xlsx", ".h5", ".hdf5", ".tdms", ".mf4", ".uff", ".wav", ".lvm"),
+    }
+)
+"""Endings that say what a file is: of exports, of results, of campaigns and their recordings."""
 
 
 @shown
@@ -61,9 +70,14 @@ class ExportedFile:
         Raises
         ------
         InputError
-            If a file of the user's would be overwritten, or the folder cannot be written.
+            If the path has the ending of another kind of file, if a file of the user's would be overwritten, or if the folder
+            cannot be written.
         """
         path = Path(path)
         path = path / self.name if path.is_dir() else path
+        own, given = Path(self.name).suffix, path.suffix.lower()
+        if given in _OF_OTHER_KINDS - {own}:
+            found, expected = f"the ending {given}", f"the ending {own}, as of {self.name}"
+            raise InputError([Problem(str(path), found, expected, f"Name it {path.stem}{own}.")])
         atomic_write(path.parent, {path.name: self.content}, overwrite=overwrite)
         return path

@@ -26,7 +26,7 @@ _LEAST_ORDERS = 4
 """Orders at which a pole must be present, however late it appears."""
 
 _DIED_AWAY = 10.0
-"""Factor by which a mode has decayed in the block row at the latest at which its amplitude is compared with that at the first."""
+"""Factor by which a mode has decayed, at the most, in the block row whose amplitude is compared with that of the first one."""
 
 
 @shown
