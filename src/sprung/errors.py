@@ -216,7 +216,7 @@ def did_you_mean(word: str, allowed: Iterable[str]) -> str:
         ``Did you mean 'wheels'?`` if one is close, or the one of which the word's initials are, as of "rear right" those are
         rr; all of them if several are equally close; otherwise the allowed words.
     """
-    allowed = sorted(allowed)
+    allowed = sorted(set(allowed))
     initials = "".join(part[0] for part in re.split(r"[\W_]+", word.lower()) if part)
     if initials in allowed and len(initials) > 1:
         return f"Did you mean '{initials}'?"

@@ -157,7 +157,8 @@ def test_transmissibility_has_its_uncertainty() -> None:
         ({"places": {"seat": (-1.0, 0.0, 0.5)}}, "Leave z out"),
         ({"tracks": "alike"}, "isotropic"),
         ({"duration": -1800.0}, r"found -0.5 h \(-1800 s\); expected a positive duration"),
-        ({"load": "trailer"}, "one of empty"),
+        ({"load": "trailer"}, "a load of the campaign. Allowed: empty"),
+        ({"places": {"seat": (1400.0, 400.0)}}, "coordinates of -20 to 20 m"),
     ],
 )
 def test_impossible_options_are_refused(options: dict[str, object], message: str) -> None:
@@ -167,8 +168,8 @@ def test_impossible_options_are_refused(options: dict[str, object], message: str
 
 def test_all_faults_are_in_one_error() -> None:
     with pytest.raises(InputError) as raised:
-        ride_numbers(CAR, roads="XY", speeds=[0.0], tracks="alike")
-    assert len(raised.value.problems) == 4
+        ride_numbers(CAR, roads="XY", speeds=[0.0], tracks="alike", load="trailer")
+    assert len(raised.value.problems) == 5
 
 
 def test_rejected_and_undetermined_results_are_refused() -> None:

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
+from sprung.campaign import explain_implausible
 from sprung.display import shown
 from sprung.errors import Problems, did_you_mean
 from sprung.ride.bench import AMPLITUDE
@@ -83,8 +84,9 @@ def checked_options(
     tracks: str,
     duration: float,
     heights: Heights,
+    problems: Problems,
 ) -> RideOptions:
-    """Return options, all their faults in one error.
+    """Return options; what is impossible of them is only named.
 
     Parameters
     ----------
@@ -100,17 +102,13 @@ def checked_options(
         s.
     heights
         Of the vehicle, for horizontal motion.
+    problems
+        Takes up what is impossible.
 
     Returns
     -------
     RideOptions
-
-    Raises
-    ------
-    InputError
-        If one of them is impossible.
     """
-    problems = Problems()
     options = RideOptions(
         roads=tuple(_checked_roads(roads, problems)),
         speeds=tuple(_checked_speeds(speeds, problems)),
@@ -121,7 +119,6 @@ def checked_options(
     if not 0 < duration < math.inf:
         found = f"{duration / HOUR:g} h ({duration:g} s)"
         problems.add(f"{_WHERE}: duration", found, "a positive duration", "Correct it; durations in Python are in s.")
-    problems.raise_if_any()
     return options
 
 
@@ -158,6 +155,10 @@ def _checked_places(
         if len(place) not in (2, 3) or not all(map(math.isfinite, place)):
             expected = "x, y or x, y, z in m: forward of the front axle, left of the centreline, above the ground"
             problems.add(where, str(tuple(place)), expected, "Correct it.")
+        elif far := [
+            limits for name, at in zip("xyz", place, strict=False) if (limits := explain_implausible(name, at))
+        ]:
+            problems.add(where, str(tuple(place)), f"coordinates of {far[0][0]}", far[0][1])
         elif len(place) == 2:
             yield name, (place[0], place[1])
         elif heights.cg_height is None:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.errors import InputError, Problem, did_you_mean
+from sprung.errors import Problems, did_you_mean
 from sprung.results import Result
 from sprung.ride.distribution import ParameterDistribution, estimate_of_number
 from sprung.ride.evaluation import AXLE_NAMES, CURVE_FREQUENCIES, Evaluation, Key, evaluate
@@ -67,7 +67,8 @@ def ride_numbers(
     InputError
         If the verdict is reject, a parameter is not determined, or an option is impossible.
     """
-    on_board = _load_of(source, load)
+    problems = Problems()
+    on_board = _load_of(source, load, problems)
     if isinstance(source, Vehicle):
         distribution, vehicle, terms, own_tracks = ParameterDistribution.of_vehicle(source), source, None, None
     else:
@@ -77,7 +78,8 @@ def ride_numbers(
         terms, own_tracks = source.fit.model, source.fit.tracks
     chosen = _usual_places(vehicle) if places is None else places
     tracks = tracks or ("same" if distribution.undetermined else "isotropic")
-    options = checked_options(roads, speeds, chosen, tracks, duration, vehicle.heights)
+    options = checked_options(roads, speeds, chosen, tracks, duration, vehicle.heights, problems)
+    problems.raise_if_any()
     points = [(place[0], place[1]) for place in options.places.values()]
     model = RideModel.of(vehicle, on_board, points, distribution.names, terms, own_tracks)
     is_uncertain = bool(distribution.std.any()) or bool(distribution.undetermined) or not distribution.is_scaled
@@ -85,15 +87,15 @@ def ride_numbers(
     return _Assembly(model, distribution, options, base).numbers()
 
 
-def _load_of(source: Result | Vehicle, load: str | Load) -> Load:
+def _load_of(source: Result | Vehicle, load: str | Load, problems: Problems) -> Load:
     if isinstance(load, Load):
         return load
     known = {EMPTY.name: EMPTY}
     if not isinstance(source, Vehicle):
         known |= {one.name: one for one in source.setup.loads}
     if load not in known:
-        do = did_you_mean(load, known)
-        raise InputError([Problem("ride numbers: load", f"'{load}'", f"one of {', '.join(known)}", do)])
+        problems.add("ride numbers: load", f"'{load}'", "a load of the campaign", did_you_mean(load, known))
+        return EMPTY
     return known[load]
 
 
