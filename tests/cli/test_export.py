@@ -62,6 +62,7 @@ def test_what_is_approximated_is_said(results: Path) -> None:
         (("--to", "modelika"), "Did you mean 'modelica'?"),
         (("--to", "fmu", "--amplitude", "0.01"), "the option amplitude"),
         (("--to", "draws", "--number", "0"), "a whole number, 1 or more"),
+        (("--to", "draws", "--number", "1000000000"), "no more than 10000000"),
         (("--to", "mjcf", "--load", "nothing"), "the load 'nothing'"),
     ],
 )

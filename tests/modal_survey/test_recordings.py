@@ -47,6 +47,14 @@ def test_one_file_will_do_and_begins_where_it_is_told(folder: Path) -> None:
     assert later[0].frequency_std > whole[0].frequency_std
 
 
+@pytest.mark.parametrize("start", [-1.0, 100.0, np.nan])
+def test_a_start_outside_of_the_recordings_is_refused(folder: Path, start: float) -> None:
+    with pytest.raises(InputError, match=r"drop0\.csv: start: found .* s; expected a time of this recording, 0 to"):
+        sprung.modes(folder, start=start)
+    with pytest.raises(InputError, match="modes: start: found"):
+        sprung.modes(np.zeros((2, 100)), rate=100.0, start=start)
+
+
 def test_a_campaign_is_none(folder: Path) -> None:
     (folder / "campaign.toml").write_text("schema = 1\n")
     assert not sprung.is_recordings(folder)

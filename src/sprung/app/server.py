@@ -77,6 +77,7 @@ def serve(
             access_log=False,
             server_header=False,
             proxy_headers=False,
+            lifespan="off",  # a second interrupt would break it off with a traceback, and it has nothing to do
             timeout_graceful_shutdown=1,
             backlog=2048,
         )

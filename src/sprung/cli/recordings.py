@@ -117,7 +117,7 @@ def modal(
         else:
             read = sprung.read(campaign, progress=progress)
             found = sprung.modes(
-                read, method=method, order=order, amplitude=amplitude, diagram=diagram, progress=progress
+                read, method=method, order=order, start=start, amplitude=amplitude, diagram=diagram, progress=progress
             )
             faults = sprung.check(read, progress=progress).faults
     if as_json:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 import io
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -27,6 +28,9 @@ Array = NDArray[np.float64]
 
 USUAL_NUMBER = 200
 """Draws of a table where none are asked for: a standard deviation from them is known to 5 %."""
+
+MOST = 10_000_000
+"""Draws at the most: a table of two gigabytes."""
 
 
 @shown
@@ -128,9 +132,12 @@ def draws(result: Result, number: int = USUAL_NUMBER, *, seed: int | None = None
         If the result is rejected, a parameter is not determined, or the number or seed is impossible; all reasons at once.
     """
     problems = [
-        Problem(f"draws of {result.name}: {what}", repr(value), f"a whole number, {least} or more", "Correct it.")
-        for what, value, least in (("number", number, 1), ("seed", seed, 0))
-        if value is not None and (isinstance(value, bool) or int(value) != value or value < least)
+        Problem(f"draws of {result.name}: {what}", repr(value), f"a whole number, {expected}", "Correct it.")
+        for what, value, least, most, expected in (
+            ("number", number, 1, MOST, f"1 or more and no more than {MOST}"),
+            ("seed", seed, 0, math.inf, "0 or more"),
+        )
+        if value is not None and (isinstance(value, bool) or int(value) != value or not least <= value <= most)
     ]
     try:
         vehicle = result.vehicle

@@ -115,6 +115,10 @@ def modes_of_recordings(
     if len({round(rate, 6) for rate in rates}) > 1:
         found = ", ".join(f"{file.name} {rate:g} Hz" for (file, _), rate in zip(tables, rates, strict=True))
         problems.add(str(path), found, "one rate", "Give files of one rate together.")
+    for file, table in tables:
+        if start is not None and not table.time[0] <= start < table.time[-1]:
+            expected = f"a time of this recording, {table.time[0]:g} to {table.time[-1]:g} s"
+            problems.add(f"{file.name}: start", f"{start:g} s", expected, "Correct the start.")
     problems.raise_if_any()
     records, names = [], list[str]()
     for file, table in tables:
@@ -207,6 +211,10 @@ def modes_of_arrays(
     elif channels is not None and len(channels) not in counts:
         problems.add("modes: channels", f"{len(channels)} names", f"{counts.pop()}, one each", "Correct the names.")
     problems.raise_if_any()
+    longest = max(decay.shape[1] for decay in decays) / (rate or 1.0)
+    if start is not None and not 0 <= start < longest:
+        problems.add("modes: start", f"{start:g} s", f"0 to {longest:g} s, from the first sample", "Correct the start.")
+        problems.raise_if_any()
     assert rate is not None  # noqa: S101 (checked above; for the type checker)
     begin = round((start or 0.0) * rate)
     records = [decay[:, begin:] for decay in decays]
