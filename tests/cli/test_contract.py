@@ -254,7 +254,7 @@ def test_without_a_report_none_is_left(folder: Folder) -> None:
 def test_a_report_of_nothing(tmp_path: Path) -> None:
     said = run("report", tmp_path)
     assert (said.status, said.out) == (2, "")
-    assert "Name the folder given to save." in said.err
+    assert "Name a folder of results." in said.err
     assert not list(tmp_path.iterdir())
 
 

@@ -85,17 +85,17 @@ def _read_document(path: Path) -> dict[str, Any]:
         document = json.loads(path.read_text(encoding="utf-8"), parse_constant=_refuse_constant)
     except OSError as error:
         inside = path.parent / "results"
-        do = f"Did you mean {inside}?" if (inside / "results.json").is_file() else "Name the folder given to save."
+        do = f"Did you mean {inside}?" if (inside / "results.json").is_file() else "Name a folder of results."
         _refuse(path, (error.strerror or str(error)).lower(), "a saved result", do, error)
     except (ValueError, RecursionError) as error:
         found = f"no valid JSON ({error}): cut off or changed by hand"
         _refuse(path, found, "a whole results.json", _REMEDY, error)
     if not isinstance(document, dict):
-        _refuse(path, f"JSON that holds a {type(document).__name__}", "a result", "Name the folder given to save.")
+        _refuse(path, f"JSON that holds a {type(document).__name__}", "a result", "Name a folder of results.")
     schema = document.get("schema")
     if schema is None:
         found = "JSON without a schema number, which every result has"
-        _refuse(path, found, "a result as sprung wrote it", "Name the folder given to save.")
+        _refuse(path, found, "a result as sprung wrote it", "Name a folder of results.")
     if isinstance(schema, int) and schema > SCHEMA:
         writer = document.get("sprung", "a newer sprung")
         _refuse(path, f"schema {schema}, of sprung {writer}", f"schema {SCHEMA} or older", "Update sprung to read it.")

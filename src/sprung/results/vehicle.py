@@ -36,14 +36,12 @@ def identified_vehicle(
         If the verdict is reject, or a parameter is not determined.
     """
     if verdict.state == "reject":
-        do = "Read result.verdict.reasons; measure again, or correct the campaign."
+        do = "Read the reasons of the verdict; measure again, or correct the campaign."
         raise InputError([Problem(f"result of {name}", "the verdict reject", "accept or doubtful", do)])
     values = {parameter: estimate.value for parameter, estimate in parameters.items() if estimate.value is not None}
     missing = [parameter for parameter in parameters if parameter not in values]
     if missing:
         found = f"no value of {', '.join(missing)}"
-        do = (
-            "Read result.unidentifiable: it names what would determine them. Ratios are in result.scale.per_total_mass."
-        )
+        do = "The report says what would determine them; ratios to the total mass are in it, too."
         raise InputError([Problem(f"result of {name}", found, "every parameter determined", do)])
     return Vehicle.nearest(values, name=name, **heights)

@@ -85,7 +85,8 @@ def complete_parameters(given: Mapping[str, float], layout: Layout, where: str, 
         if own == [None, None] and shared in ABSENT:
             own = [ABSENT[shared]] * 2
         if None in own or (both is not None and own != [both, both]):
-            found = ", ".join(f"{one}={given.get(one)}" for one in (shared, *apart))
+            stated = [f"{one} = {given[one]:g}" for one in (shared, *apart) if given.get(one) is not None]
+            found = ", ".join(stated) or f"no '{shared}'"
             expected = f"either {shared}, or {apart[0]} (dampers) and {apart[1]} (springs)"
             problems.add(f"{where}: {shared}", found, expected, "Give one of the two.")
         values |= {one: math.nan if value is None else value for one, value in zip(apart, own, strict=True)}
