@@ -87,6 +87,7 @@ EDITS = {
     "a smaller error bar": (put("parameters", "k_sf", "std", value=1.0), "changed after it was written"),
     "a word that is none": (put("verdict", "state", value="perfect"), r"verdict\.state"),
     "a parameter gone": (lambda document: document["parameters"].pop("k_sf"), "changed after it was written"),
+    "a missing entry": (lambda document: document.pop("parameters"), "parameters: found no such entry"),
     "an unknown key": (lambda document: document.update(extra=1), "extra: found a key that no result has"),
     "no checksums": (lambda document: document.pop("checksums"), "changed after it was written"),
     "no checksums but text": (put("checksums", value="none"), "changed after it was written"),

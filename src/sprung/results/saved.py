@@ -33,6 +33,9 @@ _UNREADABLE = (
 )
 """What NumPy and zipfile raise of archives in which bytes have been changed."""
 
+_IN_WORDS = {UNKNOWN_KEY: "a key that no result has", "missing": "no such entry"}
+"""What does not fit in a file, by the type of the error."""
+
 
 def load(folder: str | Path, *, series: bool = True) -> Result:
     """Return a saved result.
@@ -65,7 +68,7 @@ def load(folder: str | Path, *, series: bool = True) -> Result:
     except ValidationError as error:
         for reason in error.errors():
             key = ".".join(map(str, reason["loc"]))
-            found = "a key that no result has" if reason["type"] == UNKNOWN_KEY else reason["msg"]
+            found = _IN_WORDS.get(reason["type"], reason["msg"])
             problems.add(f"{path}: {key}", found, *_expected_of(document))
     if checksums.get("document") != document_checksum(document):
         found = "a file that was changed after it was written (its checksum differs)"
