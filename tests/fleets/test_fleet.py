@@ -13,7 +13,7 @@ import pytest
 
 import sprung
 from command_line import run
-from sprung.batch import read_rows
+from sprung.batch import BatchCounts, read_rows
 from sprung.errors import InputError
 from sprung.fleets import COLUMNS, campaign_key, collect_estimates, find_campaigns, in_test_order, row_of, survey_types
 from sprung.fleets.estimates import label_vehicles
@@ -215,16 +215,47 @@ def test_types_are_names_or_all_vehicles() -> None:
     for i, campaign in enumerate(campaigns):
         result = row_of(sprung.analysis.identify_campaign(replace(campaign, name=f"car {i % 2}"), **OPTIONS))
         made.append({**result, "status": "done", "campaign": f"/{i}/campaign.toml"})
-    types, small = survey_types(made)
+    types, small, _ = survey_types(made)
     assert [one.name for one in types] == ["car 0"]
     assert small == {"car 1": 2}
-    (one,), none = survey_types(made, one_type=True)
-    assert (one.name, one.estimates.count, none) == ("all vehicles", 5, {})
+    (one,), none, alike = survey_types(made, one_type=True)
+    assert (one.name, one.estimates.count, none, alike) == ("all vehicles", 5, {}, {})
     # The scale of the two that were not weighed is that of the others.
     table = {(row["label"], row["parameter"]): row for row in one.rows()}
     assert table["0", "k_sf"]["single"] is None
     assert table["0", "k_sf"]["hierarchical"] == pytest.approx(17000, abs=4 * table["0", "k_sf"]["hierarchical_std"])
     assert collect_estimates([]) is None
+
+
+def estimated(number: int, vehicle: str, *names: str) -> dict[str, Any]:
+    """Return the columns of a row that are compared; a few estimates, each known to 1 %, near zero."""
+    position = np.random.default_rng(number).normal(0, 0.02, len(names)).tolist()
+    covariance = (1e-4 * np.eye(len(names))).ravel().tolist()
+    own = {"coordinates": list(names), "position": position, "covariance": covariance}
+    return row(number, status="done", vehicle=vehicle, **own)
+
+
+@pytest.mark.parametrize("one_type", [False, True])
+def test_parts_of_a_vehicle_are_types_of_their_own(one_type: bool) -> None:
+    """k_s of a quarter car is no k_s of a roll plane, whatever the names of the vehicles are."""
+    cars = [estimated(number, "car", "m_s", "I_xx", "m_uf", "k_sf") for number in range(3)]
+    planes = [estimated(number, "car", "m_s", "I_xx", "m_u", "k_s") for number in range(3, 7)]
+    quarters = [estimated(number, "car", "m_s", "m_u", "k_s") for number in range(7, 9)]
+    types, small, parts = survey_types([*quarters, *planes, *cars], one_type)
+    name = "all vehicles" if one_type else "car"
+    assert [(one.name, one.estimates.count) for one in types] == [
+        (f"{name}, roll plane", 4),
+        (f"{name}, whole vehicle", 3),
+    ]
+    assert small == {f"{name}, quarter car": 2}
+    assert parts == {name: {"quarter car": 2, "roll plane": 4, "whole vehicle": 3}}
+    found = sprung.fleets.Fleet(Path("out"), BatchCounts(9, 0, 0), 9, (), {"accept": 9}, {}, types, small, parts)
+    shown = " ".join(text_of(fleet_view(found)).split())
+    assert f"{name}: different parts of a vehicle" in shown
+    assert "quarter car (2), roll plane (4), whole vehicle (3)" in shown
+    assert f"too few vehicles of one type to compare: {name}, quarter car (2)" in shown
+    assert ("--one-type" in shown) is not one_type
+    assert found.document()["parts"] == parts
 
 
 def test_the_command(identified: Identified, tmp_path: Path) -> None:

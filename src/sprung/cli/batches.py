@@ -66,7 +66,10 @@ def fleet(
     ] = None,
     one_type: Annotated[
         bool,
-        typer.Option("--one-type", help="Compare all vehicles with each other, not only those of the same name."),
+        typer.Option(
+            "--one-type",
+            help="Compare all vehicles of one [vehicle] model with each other, not only those of the same name.",
+        ),
     ] = False,
     retry: Retry = False,
     force: Force = False,

@@ -78,6 +78,9 @@ class Fleet:
         What the vehicles of each type tell together.
     small_types
         Number of vehicles by name, of types with too few of them.
+    parts
+        By name, of those whose vehicles are not all of one part of a vehicle (``[vehicle] model``): number of vehicles by
+        part, each of which is a type of its own.
     """
 
     folder: Path
@@ -88,6 +91,7 @@ class Fleet:
     failures: Mapping[str, str]
     types: tuple[FleetType, ...]
     small_types: Mapping[str, int] = field(default_factory=dict)
+    parts: Mapping[str, Mapping[str, int]] = field(default_factory=dict)
 
     def to_dataframe(self) -> pd.DataFrame:
         """Return the rows as a table, without columns that are empty in all of them."""
@@ -108,6 +112,7 @@ class Fleet:
             "failures": dict(self.failures),
             "types": [one.document() for one in self.types],
             "small_types": dict(self.small_types),
+            "parts": {name: dict(counts) for name, counts in self.parts.items()},
         }
 
 
@@ -140,7 +145,8 @@ def fleet(
     tracks, extras, fall
         As for `sprung.identify`, for every campaign.
     one_type
-        Whether all vehicles are of one type. By default those of one name (``[vehicle] name``) are.
+        Whether all vehicles are of one type. By default those of one name (``[vehicle] name``) are. Different parts of a
+        vehicle (``[vehicle] model``) are different types in any case.
     retry
         Whether campaigns that could not be identified are tried again although nothing has changed.
     progress
@@ -173,10 +179,10 @@ def fleet(
         progress(Step("comparing the vehicles"))
         verdicts: Counter[str] = Counter()
         failures: dict[str, str] = {}
-        types, small = survey_types(_watched(folder, verdicts, failures), one_type)
-        rows = [row for one in types for row in one.rows()]
+        found = survey_types(_watched(folder, verdicts, failures), one_type)
+        rows = [row for one in found.types for row in one.rows()]
         write_table(folder / HIERARCHICAL_FOLDER, "estimates", rows, HIERARCHICAL_COLUMNS)
-    return Fleet(folder, summary.counts, summary.computed, summary.gone, dict(verdicts), failures, types, small)
+    return Fleet(folder, summary.counts, summary.computed, summary.gone, dict(verdicts), failures, *found)
 
 
 def _listed(extras: str | Sequence[str] | None) -> list[str] | None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,8 +16,12 @@ from sprung.fleets.charts import ControlChart, chart_vehicles
 from sprung.fleets.estimates import FleetEstimates, collect_estimates, quantity_of
 from sprung.fleets.population import FEWEST, Population, VehicleEstimates, estimate_vehicles
 from sprung.uncertainty import NORMAL_95
+from sprung.vehicle import PART_NAMES, layout_of
 
 Real = NDArray[np.float64]
+
+ALL_VEHICLES = "all vehicles"
+"""Name of the type of all vehicles, whatever their own names."""
 
 
 @shown
@@ -152,34 +156,59 @@ class FleetType:
         }
 
 
-def survey_types(rows: Iterable[Row], one_type: bool = False) -> tuple[tuple[FleetType, ...], Mapping[str, int]]:
-    """Return the types of a fleet, and the names of those with too few vehicles.
+class Survey(NamedTuple):
+    """What the vehicles of a fleet tell, type by type.
+
+    Attributes
+    ----------
+    types
+        In the order of their names.
+    small
+        Number of vehicles by name, of types with fewer than three.
+    parts
+        By name, of those whose vehicles are not all of one part of a vehicle: number of vehicles by part, each of which is a
+        type of its own.
+    """
+
+    types: tuple[FleetType, ...]
+    small: Mapping[str, int]
+    parts: Mapping[str, Mapping[str, int]]
+
+
+def survey_types(rows: Iterable[Row], one_type: bool = False) -> Survey:
+    """Return the types of a fleet: vehicles of one name and of one part of a vehicle.
 
     Parameters
     ----------
     rows
         With the columns of `NEEDED`.
     one_type
-        Whether all vehicles are of one type; otherwise those of one name are.
+        Whether all vehicles of one part are of one type; otherwise those of one name are.
 
     Returns
     -------
-    types
-        In the order of their names.
-    small
-        Number of vehicles by name, of types with fewer than three.
+    Survey
     """
-    groups: dict[str, list[Row]] = {}
+    by_name: dict[str, dict[str, list[Row]]] = {}
     for row in rows:
         if row["status"] == "done" and row["coordinates"]:
-            groups.setdefault("all vehicles" if one_type else row["vehicle"] or "unnamed", []).append(row)
+            name = ALL_VEHICLES if one_type else row["vehicle"] or "unnamed"
+            part = PART_NAMES[layout_of(row["coordinates"]).model]
+            by_name.setdefault(name, {}).setdefault(part, []).append(row)
+    parts = {
+        name: {part: len(group) for part, group in sorted(groups.items())}
+        for name, groups in sorted(by_name.items())
+        if len(groups) > 1
+    }
     types, small = [], {}
-    for name, group in sorted(groups.items()):
-        if len(group) < FEWEST:
-            small[name] = len(group)
-        elif (estimates := collect_estimates(in_test_order(group))) is not None:
-            types.append(_survey(name, estimates))
-    return tuple(types), small
+    for name, groups in sorted(by_name.items()):
+        for part, group in sorted(groups.items()):
+            label = f"{name}, {part}" if name in parts else name
+            if len(group) < FEWEST:
+                small[label] = len(group)
+            elif (estimates := collect_estimates(in_test_order(group))) is not None:
+                types.append(_survey(label, estimates))
+    return Survey(tuple(types), small, parts)
 
 
 def _survey(name: str, estimates: FleetEstimates) -> FleetType:

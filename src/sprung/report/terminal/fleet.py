@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from sprung.fleets import Deviation, Fleet, FleetType
+from sprung.fleets import ALL_VEHICLES, Deviation, Fleet, FleetType
 from sprung.report.terminal.layout import hanging_text, render_table
 from sprung.report.terminal.result import COLOURS
 from sprung.study import MonteCarlo, ParameterAccuracy, Share
@@ -63,13 +63,21 @@ def notes_of(fleet: Fleet) -> Iterator[str]:
             f"{len(fleet.gone)} rows are of campaigns that are not among these ones, the first {fleet.gone[0]}: they are kept "
             "and included"
         )
+    for name, parts in fleet.parts.items():
+        counts = ", ".join(f"{part} ({count})" for part, count in parts.items())
+        yield (
+            f"{name}: different parts of a vehicle ([vehicle] model) are compared apart, as the same name means another "
+            f"quantity in each: {counts}"
+        )
     if fleet.small_types:
         names = ", ".join(f"{name} ({count})" for name, count in list(fleet.small_types.items())[:_LISTED])
         more = f" and {len(fleet.small_types) - _LISTED} more" if len(fleet.small_types) > _LISTED else ""
-        yield (
-            f"too few vehicles of one name to compare: {names}{more}. Give the vehicles of a type one [vehicle] name and each "
-            "its own identification, or compare all: --one-type"
-        )
+        yield f"too few vehicles of one type to compare: {names}{more}"
+        if not all(name.startswith(ALL_VEHICLES) for name in fleet.small_types):
+            yield (
+                "to compare them, give the vehicles of a type one [vehicle] name and each its own identification, or compare "
+                "all: --one-type"
+            )
 
 
 def spread_table(one: FleetType) -> Table:
