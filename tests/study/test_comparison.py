@@ -246,7 +246,7 @@ def test_scatter_is_what_was_put_in() -> None:
 
 
 def test_nothing_to_compare_is_said(same: list[sprung.Result]) -> None:
-    with pytest.raises(InputError, match="found 1 results; expected two or more"):
+    with pytest.raises(InputError, match="found 1 result; expected two or more"):
         sprung.compare(same[:1])
     with pytest.raises(InputError, match="expected two or more"):
         sprung.compare("results")

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from sprung.display import count_text
 from sprung.errors import Problems
 from sprung.results import Result, load
 from sprung.study.comparability import ABSENT, contradiction_of, part_of, unit_of, value_of
@@ -98,7 +99,7 @@ def compare(results: Sequence[Result | str | Path], *, names: Sequence[str] | No
 def _check_arguments(results: Sequence[object], names: Sequence[str] | None) -> None:
     problems = Problems()
     if isinstance(results, str | Path | Result) or len(results) < 2:  # a string is a sequence too
-        found = "one result" if isinstance(results, str | Path | Result) else f"{len(results)} results"
+        found = count_text(1 if isinstance(results, str | Path | Result) else len(results), "result")
         problems.add("compare", found, "two or more", "Name the results folders to compare.")
     elif names is not None and (len(names) != len(results) or len(set(names)) != len(names)):
         found = f"the names {', '.join(names)} for {len(results)} results"

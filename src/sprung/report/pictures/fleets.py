@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from sprung.fleets import FleetType
 from sprung.report.drawing.axis import Axis, axis_limits
 from sprung.report.drawing.picture import Curve, Mark, Panel, Picture, Points, Rule
+from sprung.tables import unit_text
 from sprung.uncertainty import NORMAL_95
 
 Real = NDArray[np.float64]
@@ -149,8 +150,8 @@ def _parameter(one: FleetType, j: int) -> Picture:
     seen = [joint_values, np.array(spread.limits), *([values[shown]] if shown.any() else [])]
     if few and shown.any():
         seen += [values[shown] + sign * NORMAL_95 * value_stds[shown] for sign in (-1, 1)]
-    unit = "" if spread.unit == "1" else f", {spread.unit}"
-    panel = Panel(Axis(f"{name}{unit}", *axis_limits(*seen)), tuple(marks), height=1.5)
+    label = ", ".join(filter(None, (name, unit_text(spread.unit))))
+    panel = Panel(Axis(label, *axis_limits(*seen)), tuple(marks), height=1.5)
     return Picture(
         name,
         _numbers(one),

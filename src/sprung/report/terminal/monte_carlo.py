@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from rich.console import Group, RenderableType
 from rich.text import Text
 
+from sprung.display import count_text
 from sprung.report.terminal.layout import hanging_text, render_table
 from sprung.report.terminal.result import COLOURS
 from sprung.study import MonteCarlo, ParameterAccuracy, Share
@@ -30,7 +31,7 @@ def monte_carlo_view(found: MonteCarlo) -> RenderableType:
         For `text_of`.
     """
     counts = found.counts
-    text = f"{found.vehicle}: {counts.done} campaigns simulated and identified, {counts.failed} failed"
+    text = f"{found.vehicle}: {count_text(counts.done, 'campaign')} simulated and identified, {counts.failed} failed"
     there = counts.done + counts.failed - found.computed
     parts: list[RenderableType] = [
         Text(f"{text}; {there} of them in an earlier run." if there else f"{text}.", style="bold")
