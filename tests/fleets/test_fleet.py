@@ -249,7 +249,9 @@ def test_parts_of_a_vehicle_are_types_of_their_own(one_type: bool) -> None:
     ]
     assert small == {f"{name}, quarter car": 2}
     assert parts == {name: {"quarter car": 2, "roll plane": 4, "whole vehicle": 3}}
-    found = sprung.fleets.Fleet(Path("out"), BatchCounts(9, 0, 0), 9, (), {"accept": 9}, {}, types, small, parts)
+    found = sprung.fleets.Fleet(
+        Path("out"), BatchCounts(9, 0, 0), 9, (), {"accept": 9}, {}, {}, types=types, small_types=small, parts=parts
+    )
     shown = " ".join(text_of(fleet_view(found)).split())
     assert f"{name}: different parts of a vehicle" in shown
     assert "quarter car (2), roll plane (4), whole vehicle (3)" in shown
@@ -269,7 +271,26 @@ def test_the_command(identified: Identified, tmp_path: Path) -> None:
     assert {path.name for path in (tmp_path / "out").iterdir()} >= {"fleet.html", "fleet.json", "rows-00001.parquet"}
     empty = run("fleet", folder / "cars" / "unreadable", "-o", tmp_path / "other", "--workers", "1")
     assert empty.status == 2
-    assert "unreadable/campaign.toml: found campaign.toml: line 1" in empty.err
+    assert "unreadable/campaign.toml: found no result (campaign.toml: line 1" in empty.err
     assert "expected a campaign that can be identified" in empty.err
     assert not (tmp_path / "other" / "fleet.html").exists()
     assert fleet.counts.done == 4
+
+
+def test_a_rejected_and_a_missing_campaign_are_named(tmp_path: Path) -> None:
+    """The path of a campaign that does not exist is named once, though its own message names it, too."""
+    campaign = simulate(TABLE_1_CAR, drops=DROPS, seed=1, duration=1.5)
+    others = [simulate(TABLE_1_CAR, drops=DROPS, seed=seed, duration=1.5, noise=5.0) for seed in (2, 3)]
+    drops = [
+        replace(drop, recording=other.drops[0].recording) for drop, other in zip(campaign.drops, others, strict=True)
+    ]
+    written = sprung.write(replace(campaign, drops=tuple(drops)), tmp_path / "noise")
+    found = sprung.fleet([written, tmp_path / "none"], tmp_path / "out", workers=1, **OPTIONS)
+    missing = (tmp_path / "none").resolve().as_posix()
+    assert found.failures[missing].startswith("found no such file")
+    assert f"{missing}: found no such file" in " ".join(text_of(fleet_view(found)).split())
+    (reason,) = found.rejected.values()
+    assert list(found.rejected) == [written.resolve().as_posix()]
+    assert reason == sprung.identify(written, **OPTIONS).verdict.reasons[0]
+    assert found.verdicts == {"reject": 1}
+    assert "1 campaign identified (1 reject), 1 failed." in text_of(fleet_view(found))

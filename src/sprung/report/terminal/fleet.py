@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from rich.console import Group, RenderableType
 from rich.text import Text
 
+from sprung.display import count_text
 from sprung.fleets import ALL_VEHICLES, Deviation, Fleet, FleetType
 from sprung.report.terminal.layout import hanging_text, render_table
 from sprung.report.terminal.result import COLOURS
@@ -35,15 +36,22 @@ def fleet_view(fleet: Fleet) -> RenderableType:
     """
     parts: list[RenderableType] = [Text(summary_of(fleet), style="bold")]
     parts += [hanging_text("  - ", note) for note in notes_of(fleet)]
-    failures = list(fleet.failures.items())
-    for campaign, message in failures[:_LISTED]:
-        parts.append(hanging_text("  - ", f"{campaign}: {message}"))
-    if len(failures) > _LISTED:
-        parts.append(hanging_text("  - ", f"and {len(failures) - _LISTED} more: see fleet.json"))
+    for outcomes in (fleet.failures, fleet.rejected):
+        kind = "rejected: " if outcomes is fleet.rejected else ""
+        for campaign, text in list(outcomes.items())[:_LISTED]:
+            parts.append(hanging_text("  - ", f"{kind}{campaign}: {_first_problem(text)}"))
+        if len(outcomes) > _LISTED:
+            parts.append(hanging_text("  - ", f"{kind}and {len(outcomes) - _LISTED} more: see fleet.json"))
     for one in fleet.types:
         parts += [Text(), render_table(spread_table(one))]
         parts += [hanging_text("  - ", sentence) for sentence in alarm_sentences(one)]
     return Group(*parts)
+
+
+def _first_problem(message: str) -> str:
+    """Return the first line of a message, and how many more there are."""
+    first, *others = message.splitlines() or [""]
+    return f"{first} ({count_text(len(others), 'more problem')}: see fleet.html)" if others else first
 
 
 def summary_of(fleet: Fleet) -> str:
@@ -51,17 +59,16 @@ def summary_of(fleet: Fleet) -> str:
     counts = fleet.counts
     verdicts = ", ".join(f"{fleet.verdicts[name]} {name}" for name in COLOURS if fleet.verdicts.get(name))
     there = counts.done + counts.failed - fleet.computed
-    text = f"{counts.done} campaigns identified{f' ({verdicts})' if verdicts else ''}, {counts.failed} failed"
+    identified = count_text(counts.done, "campaign")
+    text = f"{identified} identified{f' ({verdicts})' if verdicts else ''}, {counts.failed} failed"
     return f"{text}; {there} of them in an earlier run." if there else f"{text}."
 
 
 def notes_of(fleet: Fleet) -> Iterator[str]:
     """Yield what is to be said of the campaigns and of types with too few vehicles."""
     if fleet.gone:
-        yield (
-            f"{len(fleet.gone)} rows are of campaigns that are not among these ones, the first {fleet.gone[0]}: they are kept "
-            "and included"
-        )
+        earlier = count_text(len(fleet.gone), "campaign")
+        yield f"{earlier} of an earlier run not among the given ones, the first {fleet.gone[0]}: kept and included"
     for name, parts in fleet.parts.items():
         counts = ", ".join(f"{part} ({count})" for part, count in parts.items())
         yield (
@@ -101,7 +108,7 @@ def spread_table(one: FleetType) -> Table:
         )
     headers = ("", "mean", "±", "unit", "spread %", "± %", "own error %", "with the others %", "95 % limits")
     return Table(
-        f"{one.name}: {one.estimates.count} vehicles",
+        f"{one.name}: {count_text(one.estimates.count, 'vehicle')}",
         headers,
         tuple(rows),
         frozenset(headers[1:3] + headers[4:]),
