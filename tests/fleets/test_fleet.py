@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import shutil
+import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -14,7 +15,7 @@ import pytest
 import sprung
 from command_line import run
 from sprung.batch import BatchCounts, read_rows
-from sprung.errors import InputError
+from sprung.errors import InputError, Problem
 from sprung.fleets import COLUMNS, campaign_key, collect_estimates, find_campaigns, in_test_order, row_of, survey_types
 from sprung.fleets.estimates import label_vehicles
 from sprung.report import fleet_html, fleet_view, text_of
@@ -168,6 +169,20 @@ def test_a_folder_without_campaigns(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="found no such file or folder"):
         sprung.fleet(tmp_path / "nowhere", tmp_path / "out")
     assert list(tmp_path.iterdir()) == []
+
+
+def test_nothing_is_written_where_the_cluster_does_not_answer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def no_answer(*_: object) -> None:
+        raise InputError([Problem("tcp://127.0.0.1:1", "no answer", "a scheduler", "Check the address.")])
+
+    write_car(tmp_path / "cars", 1)
+    for module in ("fleets.fleet", "study.monte_carlo"):
+        monkeypatch.setattr(sys.modules[f"sprung.{module}"], "choose_executor", no_answer)
+    with pytest.raises(InputError, match="no answer"):
+        sprung.fleet(tmp_path / "cars", tmp_path / "out", scheduler="tcp://127.0.0.1:1")
+    with pytest.raises(InputError, match="no answer"):
+        sprung.study.monte_carlo(TABLE_1_CAR, n=2, output=tmp_path / "out", scheduler="tcp://127.0.0.1:1")
+    assert not (tmp_path / "out").exists()
 
 
 def test_the_key_follows_from_recordings_campaign_and_options(tmp_path: Path) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import closing
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -170,10 +171,11 @@ def fleet(
     paths = find_campaigns(source)
     options: dict[str, Any] = {"tracks": tracks, "extras": _listed(extras), "fall": fall}
     folder = Path(output)
-    with folder_lock(folder):
+    # The workers come first: where a cluster does not answer, no folder is made.
+    with closing(choose_executor(identify_row, workers, scheduler)) as executor, folder_lock(folder):
         summary = run_batch(
             _tasks(paths, options),
-            choose_executor(identify_row, workers, scheduler),
+            executor,
             folder,
             COLUMNS,
             CONTENT,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import tempfile
 from collections.abc import Iterator, Mapping
-from contextlib import ExitStack
+from contextlib import ExitStack, closing
 from dataclasses import asdict, dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
@@ -163,11 +163,13 @@ def monte_carlo(
     what = canonical_text([true, arguments, seed])
     _simulated(true, arguments, seed, 0)  # whatever is wrong with the test is wrong with all campaigns
     with ExitStack() as stack:
+        # The workers come first: where a cluster does not answer, no folder is made.
+        executor = stack.enter_context(closing(choose_executor(identify_simulated, jobs, scheduler)))
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory()) if output is None else output)
         stack.enter_context(folder_lock(folder))
         summary = run_batch(
             _tasks(true, arguments, seed, n, what),
-            choose_executor(identify_simulated, jobs, scheduler),
+            executor,
             folder,
             COLUMNS,
             f"a Monte Carlo study ({content_key([what])})",
