@@ -17,7 +17,7 @@ from sprung.errors import InputError
 from sprung.report import monte_carlo_view, text_of
 from sprung.study.monte_carlo_summary import accuracy_of, share
 from sprung.uncertainty import KnownValue
-from sprung.vehicle import TABLE_1_CAR
+from sprung.vehicle import TABLE_1_CAR, Vehicle
 
 DROPS = ({"wheels": ("fl", "fr")}, {"wheels": ("fl", "rl")})
 TEST: dict[str, Any] = {
@@ -79,10 +79,29 @@ def test_more_campaigns_go_on(study: Study) -> None:
     assert (fewer.computed, fewer.document()["parameters"]) == (0, found.document()["parameters"])
 
 
-def test_another_study_in_the_folder_is_refused(study: Study) -> None:
+def test_another_study_in_the_folder_is_refused_and_what_differs_is_named(study: Study) -> None:
     folder, _ = study
-    with pytest.raises(InputError, match=r"found rows of a Monte Carlo study .*; expected rows of a Monte Carlo study"):
-        sprung.study.monte_carlo(TABLE_1_CAR, {**TEST, "noise": 0.05}, 8, 1, output=folder)
+
+    def descriptions(*, vehicle: Vehicle = TABLE_1_CAR, seed: int = 1, **changes: object) -> list[list[str]]:
+        """Return the parts of both descriptions: vehicle, options and seed."""
+        with pytest.raises(InputError) as refused:
+            sprung.study.monte_carlo(vehicle, {**TEST, **changes}, 8, 1, output=folder, seed=seed)
+        (problem,) = refused.value.problems
+        texts = (problem.found.removeprefix("rows of "), problem.expected.removeprefix("rows of "))
+        return [text.removeprefix("a Monte Carlo study (").rstrip(")").split("; ") for text in texts]
+
+    there, wanted = descriptions(noise=0.05)
+    assert (there[0], there[2]) == (wanted[0], wanted[2])
+    assert (there[1][:14], wanted[1][:14]) == ("duration 1.5, ", "duration 1.5, ")
+    assert ("noise" in there[1], "noise 0.05, " in wanted[1]) == (False, True)
+    there, wanted = descriptions(seed=2)
+    assert (there[:2], there[2], wanted[2]) == (wanted[:2], "seed 1", "seed 2")
+    worn = Vehicle.from_parameters({**TABLE_1_CAR.parameters, "c_sf": 1300.0}, name="worn")
+    there, wanted = descriptions(vehicle=worn)
+    assert (there[1:], there[0][:21], wanted[0][:12]) == (wanted[1:], "vehicle Table 1 car, ", "vehicle worn")
+    there, wanted = descriptions(drops=DROPS[:1])
+    assert (there[0], there[2]) == (wanted[0], wanted[2])
+    assert there[1].partition("other options ")[2] != wanted[1].partition("other options ")[2]
 
 
 def test_a_test_that_cannot_be_done_is_refused_before_any_campaign(tmp_path: Path) -> None:

@@ -38,6 +38,9 @@ from sprung.vehicle import Vehicle, evaluate_quantity
 if TYPE_CHECKING:
     import pandas as pd
 
+_SUM = 8
+"""Digits of a checksum that tells two studies apart."""
+
 VERDICTS = ("accept", "doubtful", "reject")
 
 
@@ -172,7 +175,7 @@ def monte_carlo(
             executor,
             folder,
             COLUMNS,
-            f"a Monte Carlo study ({content_key([what])})",
+            _content(true, arguments, seed),
             total=n,
             retry=retry,
             progress=progress,
@@ -235,6 +238,15 @@ def _tasks(vehicle: Vehicle, arguments: dict[str, Any], seed: int, n: int, what:
     for i in range(n):
         key = content_key([version("sprung"), what, str(i)])
         yield Task(str(i + 1), key, (vehicle, arguments, seed, i))
+
+
+def _content(vehicle: Vehicle, arguments: Mapping[str, Any], seed: int) -> str:
+    """Describe a study so that two descriptions show what differs: what is long has a checksum of its own."""
+    numbers = {name: value for name, value in arguments.items() if type(value) in (int, float)}
+    others = {name: value for name, value in arguments.items() if name not in numbers}
+    stated = "".join(f"{name} {value:g}, " for name, value in sorted(numbers.items()))
+    sums = [content_key([canonical_text(part)])[:_SUM] for part in (vehicle, others)]
+    return f"a Monte Carlo study (vehicle {vehicle.name}, checksum {sums[0]}; {stated}other options {sums[1]}; seed {seed})"
 
 
 def identify_simulated(argument: tuple[Vehicle, dict[str, Any], int, int]) -> Row:
