@@ -18,7 +18,7 @@ from sprung.batch import BatchCounts, read_rows
 from sprung.errors import InputError, Problem
 from sprung.fleets import COLUMNS, campaign_key, collect_estimates, find_campaigns, in_test_order, row_of, survey_types
 from sprung.fleets.estimates import label_vehicles
-from sprung.report import fleet_html, fleet_view, text_of
+from sprung.report import fleet_html, fleet_pictures, fleet_view, text_of
 from sprung.simulation import simulate
 from sprung.uncertainty import KnownValue
 from sprung.vehicle import TABLE_1_CAR, Vehicle
@@ -118,7 +118,9 @@ def test_the_page_names_types_and_failures(identified: Identified, tmp_path: Pat
     assert "unreadable/campaign.toml" in page
     assert "http://" not in page.replace("http://www.w3.org", "")
     assert "https://" not in page
-    assert page.count('<svg class="picture"') == 3 + len(fleet.types[0].estimates.names)
+    assert (
+        page.count('<svg class="picture"') == 3 + len(fleet.types[0].estimates.names) - 1
+    )  # none of the exact wheelbase
     shown = text_of(fleet_view(fleet))
     assert "4 campaigns identified (4 accept), 1 failed" in shown
     written = sprung.report.write_fleet(fleet, tmp_path)
@@ -140,6 +142,40 @@ def test_estimates_with_the_others_are_a_table(identified: Identified) -> None:
     for row in springs.values():
         assert row["hierarchical"] == pytest.approx(row["single"], rel=0.01)
     assert springs["W04"]["hierarchical"] > springs["W01"]["hierarchical"]
+
+
+def test_an_exact_wheelbase_is_shown_as_exact(identified: Identified) -> None:
+    folder, fleet = identified
+    spread = fleet.types[0].parameters["wheelbase"]
+    assert (spread.exact, spread.mean, spread.mean_std, spread.error) == (
+        True,
+        pytest.approx(2.76, rel=1e-12),
+        0.0,
+        0.0,
+    )
+    assert (spread.spread, spread.hierarchical_error) == (0.0, 0.0)
+    line = next(line for line in text_of(fleet_view(fleet)).splitlines() if line.startswith("wheelbase"))
+    assert line.split() == ["wheelbase", "2.76", "exact", "m", "-", "-", "-", "-", "-"]
+    table = read_rows(folder / "out" / "hierarchical", ("parameter", "single_std", "hierarchical", "hierarchical_std"))
+    rows = [row for row in table if row["parameter"] == "wheelbase"]
+    assert {(row["single_std"], row["hierarchical_std"]) for row in rows} == {(0.0, 0.0)}
+    assert [row["hierarchical"] for row in rows] == pytest.approx([2.76] * 4, rel=1e-12)
+    assert not any(spread.exact for name, spread in fleet.types[0].parameters.items() if name != "wheelbase")
+
+
+def test_exact_values_that_differ_have_a_spread_but_no_error() -> None:
+    """Wheels weighed exactly, one by one, and of one vehicle on scales with an error."""
+    made = [estimated(number, "rig", "m_s", "m_u", "k_s") for number in range(6)]
+    for one in made[1:]:
+        one["covariance"] = np.diag([1e-4, 0.0, 1e-4]).ravel().tolist()
+    ((found,), _, _) = survey_types(made)
+    spread = found.parameters["m_u"]
+    assert not spread.exact
+    assert spread.error == spread.hierarchical_error == 0.0
+    assert spread.spread > 0.1
+    stds = {row["label"]: row["single_std"] for row in found.rows() if row["parameter"] == "m_u"}
+    assert [std > 0 for std in stds.values()] == [True, *[False] * 5]
+    assert fleet_pictures(found).keys() == {"spread", "rig", "vehicle", "m_s", "m_u", "k_s"}
 
 
 def test_the_table_for_pandas(identified: Identified) -> None:

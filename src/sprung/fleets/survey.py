@@ -43,6 +43,8 @@ class ParameterSpread:
         where most tests do not determine it.
     limits
         Within them is a vehicle in control with a probability of 95 %, tested with the median uncertainty; SI.
+    exact
+        Whether every vehicle has this value, known exactly before its test; spread and uncertainties are then 0.
     """
 
     unit: str
@@ -53,6 +55,7 @@ class ParameterSpread:
     error: float | None
     hierarchical_error: float
     limits: tuple[float, float]
+    exact: bool = False
 
 
 @shown
@@ -84,10 +87,12 @@ class FleetType:
     def parameters(self) -> dict[str, ParameterSpread]:
         """Spread and errors of each parameter, by name."""
         own, population = self.estimates, self.population
-        stds = np.sqrt(np.diagonal(own.covariances, axis1=1, axis2=2))
-        error, hierarchical = np.median(stds, axis=0), np.median(self.hierarchical.stds, axis=0)
-        mean_stds = np.sqrt(np.diag(population.mean_covariance))
-        half = NORMAL_95 * np.sqrt(population.std**2 + mean_stds**2 + np.where(error < 1, error, 0.0) ** 2)
+        varies = np.where(own.constant, 0.0, 1.0)
+        error = np.median(own.own_stds, axis=0)
+        hierarchical = np.median(np.where(own.exact, 0.0, self.hierarchical.stds), axis=0)
+        mean_stds = varies * np.sqrt(np.diag(population.mean_covariance))
+        spread = varies * population.std
+        half = NORMAL_95 * np.sqrt(spread**2 + mean_stds**2 + np.where(error < 1, error, 0.0) ** 2)
         means = own.values(population.mean)
         low, high = own.values(population.mean - half), own.values(population.mean + half)
         mean_uncertainties = own.stds(population.mean, mean_stds)
@@ -96,11 +101,12 @@ class FleetType:
                 quantity_of(name).unit,
                 float(means[j]),
                 float(mean_uncertainties[j]),
-                float(100 * population.std[j]),
-                float(100 * population.std[j] * population.std_error[j]),
+                float(100 * spread[j]),
+                float(100 * spread[j] * population.std_error[j]),
                 float(100 * error[j]) if error[j] < 1 else None,
                 float(100 * hierarchical[j]),
                 (float(low[j]), float(high[j])),
+                bool(own.constant[j]),
             )
             for j, name in enumerate(own.names)
         }
@@ -114,9 +120,12 @@ class FleetType:
             With the columns of `sprung.fleets.HIERARCHICAL_COLUMNS`, SI.
         """
         own, joint = self.estimates, self.hierarchical
-        single_stds = np.sqrt(np.diagonal(own.covariances, axis1=1, axis2=2))
+        single_stds = own.own_stds
         values, stds = own.values(own.positions), own.stds(own.positions, single_stds)
-        joint_values, joint_stds = own.values(joint.positions), own.stds(joint.positions, joint.stds)
+        # What is known exactly is not shared out; the floor of its covariance would move it by a rounding error.
+        joint_positions = np.where(own.exact, own.positions, joint.positions)
+        joint_stds = own.stds(joint_positions, np.where(own.exact, 0.0, joint.stds))
+        joint_values = own.values(joint_positions)
         deviating = {alarm.campaign for alarm in self.chart.vehicle_alarms}
         rows: list[Row] = []
         for i, (campaign, label) in enumerate(zip(own.campaigns, own.labels, strict=True)):

@@ -84,5 +84,5 @@ def _part(number: int, one: FleetType) -> TypePart:
         alarms=tuple(alarm_sentences(one)),
         table=spread_table(one),
         overview=(pictures["rig"], pictures["vehicle"], pictures["spread"]),
-        parameters=tuple(pictures[name] for name in one.estimates.names),
+        parameters=tuple(pictures[name] for name in one.estimates.names if name in pictures),
     )

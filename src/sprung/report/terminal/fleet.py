@@ -8,7 +8,7 @@ from rich.console import Group, RenderableType
 from rich.text import Text
 
 from sprung.display import count_text
-from sprung.fleets import ALL_VEHICLES, Deviation, Fleet, FleetType
+from sprung.fleets import ALL_VEHICLES, Deviation, Fleet, FleetType, ParameterSpread
 from sprung.report.terminal.layout import hanging_text, render_table
 from sprung.report.terminal.result import COLOURS
 from sprung.tables import Table, percent_text, unit_text
@@ -88,24 +88,7 @@ def notes_of(fleet: Fleet) -> Iterator[str]:
 
 def spread_table(one: FleetType) -> Table:
     """Return the table of a type: mean, spread between vehicles, errors of their tests, limits."""
-    rows = []
-    for name, spread in one.parameters.items():
-        mean, mean_std = round_by_uncertainty(spread.mean, spread.mean_std)
-        digits = len(mean.partition(".")[2])
-        low, high = (f"{limit:.{digits}f}" for limit in spread.limits)
-        rows.append(
-            (
-                name,
-                mean,
-                mean_std,
-                unit_text(spread.unit),
-                percent_text(spread.spread),
-                percent_text(spread.spread_std),
-                "-" if spread.error is None else percent_text(spread.error),
-                percent_text(spread.hierarchical_error),
-                f"{low} to {high}",
-            )
-        )
+    rows = [(name, *_spread_cells(spread)) for name, spread in one.parameters.items()]
     headers = ("", "mean", "±", "unit", "spread %", "± %", "own error %", "with the others %", "95 % limits")
     return Table(
         f"{one.name}: {count_text(one.estimates.count, 'vehicle')}",
@@ -113,6 +96,25 @@ def spread_table(one: FleetType) -> Table:
         tuple(rows),
         frozenset(headers[1:3] + headers[4:]),
         ("95 % limits", "± %", "±", "unit"),
+    )
+
+
+def _spread_cells(spread: ParameterSpread) -> tuple[str, ...]:
+    mean, mean_std = round_by_uncertainty(spread.mean, spread.mean_std)
+    unit = unit_text(spread.unit)
+    if spread.exact:
+        return (mean, "exact", unit, *["-"] * 5)
+    digits = len(mean.partition(".")[2])
+    low, high = (f"{limit:.{digits}f}" for limit in spread.limits)
+    return (
+        mean,
+        mean_std,
+        unit,
+        percent_text(spread.spread),
+        percent_text(spread.spread_std),
+        "-" if spread.error is None else percent_text(spread.error),
+        percent_text(spread.hierarchical_error),
+        f"{low} to {high}",
     )
 
 
