@@ -47,4 +47,5 @@ def draw_fleet(
         positions=positions,
         covariances=covariances,
         known=np.ones((count, width), dtype=bool),
+        exact=np.zeros((count, width), dtype=bool),
     )

@@ -64,6 +64,28 @@ def enumerated(texts: Sequence[str], word: str = "and") -> str:
     return f" {word} ".join(part for part in (", ".join(texts[:-1]), *texts[-1:]) if part)
 
 
+def count_text(count: int, noun: str) -> str:
+    """Return a number and its noun, in the plural unless the number is 1.
+
+    Parameters
+    ----------
+    count
+        Not negative.
+    noun
+        In the singular, with a regular plural.
+
+    Returns
+    -------
+    str
+
+    Examples
+    --------
+    >>> count_text(1, "campaign"), count_text(0, "campaign")
+    ('1 campaign', '0 campaigns')
+    """
+    return f"{count} {noun}{'' if count == 1 else 's'}"
+
+
 def text_of_record(record: object) -> str:
     """Return a record in at most ten lines.
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import shutil
+import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -13,11 +14,11 @@ import pytest
 
 import sprung
 from command_line import run
-from sprung.batch import read_rows
-from sprung.errors import InputError
+from sprung.batch import BatchCounts, read_rows
+from sprung.errors import InputError, Problem
 from sprung.fleets import COLUMNS, campaign_key, collect_estimates, find_campaigns, in_test_order, row_of, survey_types
 from sprung.fleets.estimates import label_vehicles
-from sprung.report import fleet_html, fleet_view, text_of
+from sprung.report import fleet_html, fleet_pictures, fleet_view, text_of
 from sprung.simulation import simulate
 from sprung.uncertainty import KnownValue
 from sprung.vehicle import TABLE_1_CAR, Vehicle
@@ -117,7 +118,9 @@ def test_the_page_names_types_and_failures(identified: Identified, tmp_path: Pat
     assert "unreadable/campaign.toml" in page
     assert "http://" not in page.replace("http://www.w3.org", "")
     assert "https://" not in page
-    assert page.count('<svg class="picture"') == 3 + len(fleet.types[0].estimates.names)
+    assert (
+        page.count('<svg class="picture"') == 3 + len(fleet.types[0].estimates.names) - 1
+    )  # none of the exact wheelbase
     shown = text_of(fleet_view(fleet))
     assert "4 campaigns identified (4 accept), 1 failed" in shown
     written = sprung.report.write_fleet(fleet, tmp_path)
@@ -139,6 +142,36 @@ def test_estimates_with_the_others_are_a_table(identified: Identified) -> None:
     for row in springs.values():
         assert row["hierarchical"] == pytest.approx(row["single"], rel=0.01)
     assert springs["W04"]["hierarchical"] > springs["W01"]["hierarchical"]
+
+
+def test_an_exact_wheelbase_is_shown_as_exact(identified: Identified) -> None:
+    folder, fleet = identified
+    spread = fleet.types[0].parameters["wheelbase"]
+    assert spread.exact
+    assert spread.mean == pytest.approx(2.76, rel=1e-12)
+    assert (spread.mean_std, spread.error, spread.spread, spread.hierarchical_error) == (0.0, 0.0, 0.0, 0.0)
+    line = next(line for line in text_of(fleet_view(fleet)).splitlines() if line.startswith("wheelbase"))
+    assert line.split() == ["wheelbase", "2.76", "exact", "m", "-", "-", "-", "-", "-"]
+    table = read_rows(folder / "out" / "hierarchical", ("parameter", "single_std", "hierarchical", "hierarchical_std"))
+    rows = [row for row in table if row["parameter"] == "wheelbase"]
+    assert {(row["single_std"], row["hierarchical_std"]) for row in rows} == {(0.0, 0.0)}
+    assert [row["hierarchical"] for row in rows] == pytest.approx([2.76] * 4, rel=1e-12)
+    assert not any(spread.exact for name, spread in fleet.types[0].parameters.items() if name != "wheelbase")
+
+
+def test_exact_values_that_differ_have_a_spread_but_no_error() -> None:
+    """Wheels weighed exactly, one by one, and of one vehicle on scales with an error."""
+    made = [estimated(number, "rig", "m_s", "m_u", "k_s") for number in range(6)]
+    for one in made[1:]:
+        one["covariance"] = np.diag([1e-4, 0.0, 1e-4]).ravel().tolist()
+    ((found,), _, _) = survey_types(made)
+    spread = found.parameters["m_u"]
+    assert not spread.exact
+    assert spread.error == spread.hierarchical_error == 0.0
+    assert spread.spread > 0.1
+    stds = {row["label"]: row["single_std"] for row in found.rows() if row["parameter"] == "m_u"}
+    assert [std > 0 for std in stds.values()] == [True, *[False] * 5]
+    assert fleet_pictures(found).keys() == {"spread", "rig", "vehicle", "m_s", "m_u", "k_s"}
 
 
 def test_the_table_for_pandas(identified: Identified) -> None:
@@ -168,6 +201,20 @@ def test_a_folder_without_campaigns(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="found no such file or folder"):
         sprung.fleet(tmp_path / "nowhere", tmp_path / "out")
     assert list(tmp_path.iterdir()) == []
+
+
+def test_nothing_is_written_where_the_cluster_does_not_answer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def no_answer(*_: object) -> None:
+        raise InputError([Problem("tcp://127.0.0.1:1", "no answer", "a scheduler", "Check the address.")])
+
+    write_car(tmp_path / "cars", 1)
+    for module in ("fleets.fleet", "study.monte_carlo"):
+        monkeypatch.setattr(sys.modules[f"sprung.{module}"], "choose_executor", no_answer)
+    with pytest.raises(InputError, match="no answer"):
+        sprung.fleet(tmp_path / "cars", tmp_path / "out", scheduler="tcp://127.0.0.1:1")
+    with pytest.raises(InputError, match="no answer"):
+        sprung.study.monte_carlo(TABLE_1_CAR, n=2, output=tmp_path / "out", scheduler="tcp://127.0.0.1:1")
+    assert not (tmp_path / "out").exists()
 
 
 def test_the_key_follows_from_recordings_campaign_and_options(tmp_path: Path) -> None:
@@ -215,16 +262,49 @@ def test_types_are_names_or_all_vehicles() -> None:
     for i, campaign in enumerate(campaigns):
         result = row_of(sprung.analysis.identify_campaign(replace(campaign, name=f"car {i % 2}"), **OPTIONS))
         made.append({**result, "status": "done", "campaign": f"/{i}/campaign.toml"})
-    types, small = survey_types(made)
+    types, small, _ = survey_types(made)
     assert [one.name for one in types] == ["car 0"]
     assert small == {"car 1": 2}
-    (one,), none = survey_types(made, one_type=True)
-    assert (one.name, one.estimates.count, none) == ("all vehicles", 5, {})
+    (one,), none, alike = survey_types(made, one_type=True)
+    assert (one.name, one.estimates.count, none, alike) == ("all vehicles", 5, {}, {})
     # The scale of the two that were not weighed is that of the others.
     table = {(row["label"], row["parameter"]): row for row in one.rows()}
     assert table["0", "k_sf"]["single"] is None
     assert table["0", "k_sf"]["hierarchical"] == pytest.approx(17000, abs=4 * table["0", "k_sf"]["hierarchical_std"])
     assert collect_estimates([]) is None
+
+
+def estimated(number: int, vehicle: str, *names: str) -> dict[str, Any]:
+    """Return the columns of a row that are compared; a few estimates, each known to 1 %, near zero."""
+    position = np.random.default_rng(number).normal(0, 0.02, len(names)).tolist()
+    covariance = (1e-4 * np.eye(len(names))).ravel().tolist()
+    own = {"coordinates": list(names), "position": position, "covariance": covariance}
+    return row(number, status="done", vehicle=vehicle, **own)
+
+
+@pytest.mark.parametrize("one_type", [False, True])
+def test_parts_of_a_vehicle_are_types_of_their_own(one_type: bool) -> None:
+    """k_s of a quarter car is no k_s of a roll plane, whatever the names of the vehicles are."""
+    cars = [estimated(number, "car", "m_s", "I_xx", "m_uf", "k_sf") for number in range(3)]
+    planes = [estimated(number, "car", "m_s", "I_xx", "m_u", "k_s") for number in range(3, 7)]
+    quarters = [estimated(number, "car", "m_s", "m_u", "k_s") for number in range(7, 9)]
+    types, small, parts = survey_types([*quarters, *planes, *cars], one_type)
+    name = "all vehicles" if one_type else "car"
+    assert [(one.name, one.estimates.count) for one in types] == [
+        (f"{name}, roll plane", 4),
+        (f"{name}, whole vehicle", 3),
+    ]
+    assert small == {f"{name}, quarter car": 2}
+    assert parts == {name: {"quarter car": 2, "roll plane": 4, "whole vehicle": 3}}
+    found = sprung.fleets.Fleet(
+        Path("out"), BatchCounts(9, 0, 0), 9, (), {"accept": 9}, {}, {}, types=types, small_types=small, parts=parts
+    )
+    shown = " ".join(text_of(fleet_view(found)).split())
+    assert f"{name}: different parts of a vehicle" in shown
+    assert "quarter car (2), roll plane (4), whole vehicle (3)" in shown
+    assert f"too few vehicles of one type to compare: {name}, quarter car (2)" in shown
+    assert ("--one-type" in shown) is not one_type
+    assert found.document()["parts"] == parts
 
 
 def test_the_command(identified: Identified, tmp_path: Path) -> None:
@@ -238,7 +318,26 @@ def test_the_command(identified: Identified, tmp_path: Path) -> None:
     assert {path.name for path in (tmp_path / "out").iterdir()} >= {"fleet.html", "fleet.json", "rows-00001.parquet"}
     empty = run("fleet", folder / "cars" / "unreadable", "-o", tmp_path / "other", "--workers", "1")
     assert empty.status == 2
-    assert "unreadable/campaign.toml: found campaign.toml: line 1" in empty.err
+    assert "unreadable/campaign.toml: found no result (campaign.toml: line 1" in empty.err
     assert "expected a campaign that can be identified" in empty.err
     assert not (tmp_path / "other" / "fleet.html").exists()
     assert fleet.counts.done == 4
+
+
+def test_a_rejected_and_a_missing_campaign_are_named(tmp_path: Path) -> None:
+    """The path of a campaign that does not exist is named once, though its own message names it, too."""
+    campaign = simulate(TABLE_1_CAR, drops=DROPS, seed=1, duration=1.5)
+    others = [simulate(TABLE_1_CAR, drops=DROPS, seed=seed, duration=1.5, noise=5.0) for seed in (2, 3)]
+    drops = [
+        replace(drop, recording=other.drops[0].recording) for drop, other in zip(campaign.drops, others, strict=True)
+    ]
+    written = sprung.write(replace(campaign, drops=tuple(drops)), tmp_path / "noise")
+    found = sprung.fleet([written, tmp_path / "none"], tmp_path / "out", workers=1, **OPTIONS)
+    missing = (tmp_path / "none").resolve().as_posix()
+    assert found.failures[missing].startswith("found no such file")
+    assert f"{missing}: found no such file" in " ".join(text_of(fleet_view(found)).split())
+    (reason,) = found.rejected.values()
+    assert list(found.rejected) == [written.resolve().as_posix()]
+    assert reason == sprung.identify(written, **OPTIONS).verdict.reasons[0]
+    assert found.verdicts == {"reject": 1}
+    assert "1 campaign identified (1 reject), 1 failed." in text_of(fleet_view(found))

@@ -25,9 +25,18 @@ def disturbed() -> FleetType:
 
 
 def fleet_of(one: FleetType) -> Fleet:
-    failures = {"/data/bad/campaign.toml": "found <nothing>"}
-    counts = BatchCounts(one.estimates.count, 1, 0)
-    return Fleet(Path("out"), counts, 121, ("/old/campaign.toml",), {"accept": 120}, failures, (one,), {"bus": 2})
+    problems = "\n".join(f"body_{i}.csv: found <nothing>; expected samples." for i in range(18))
+    return Fleet(
+        Path("out"),
+        BatchCounts(one.estimates.count, 1, 0),
+        121,
+        gone=("/old/campaign.toml",),
+        verdicts={"accept": 119, "reject": 1},
+        failures={"/data/bad/campaign.toml": problems},
+        rejected={"/data/no/campaign.toml": "the model does not explain <1> of the records"},
+        types=(one,),
+        small_types={"bus": 2},
+    )
 
 
 def test_alarms_are_named(disturbed: FleetType) -> None:
@@ -36,9 +45,9 @@ def test_alarms_are_named(disturbed: FleetType) -> None:
         plain = " ".join(text.split())
         assert re.search(r"rig: scale \+[34]\.\d ± 0\.\d % in all vehicles since number \d+", plain)
         assert re.search(r"vehicle car 31 \(number 31\) deviates: c_sf -2\d\.\d ± \d\.\d %", plain)
-        assert "1 rows are of campaigns that are not among these ones" in plain
+        assert "1 campaign of an earlier run not among the given ones, the first /old/campaign.toml: kept" in plain
         assert "bus (2)" in plain
-    assert "120 campaigns identified (120 accept), 1 failed." in shown
+    assert "120 campaigns identified (119 accept, 1 reject), 1 failed." in shown
 
 
 def test_the_page_is_whole_escaped_and_fetches_nothing(disturbed: FleetType) -> None:
@@ -49,6 +58,24 @@ def test_the_page_is_whole_escaped_and_fetches_nothing(disturbed: FleetType) -> 
     assert "&lt;nothing&gt;" in page
     assert not re.search(r"(src|href)=\"(https?:)?//", page)
     assert "nan" not in re.sub(r"<style>.*?</style>", "", page, flags=re.DOTALL).lower().replace("nano", "")
+
+
+def test_a_failure_takes_one_line_of_the_terminal_and_rejected_campaigns_are_named(disturbed: FleetType) -> None:
+    fleet = fleet_of(disturbed)
+    shown, page = (" ".join(text.split()) for text in (text_of(fleet_view(fleet)), fleet_html(fleet)))
+    first = "/data/bad/campaign.toml: body_0.csv: found <nothing>; expected samples."
+    assert f"{first} (17 more problems: see fleet.html)" in shown
+    assert shown.count("expected samples") == 1
+    assert page.count("expected samples") == 18
+    assert "rejected: /data/no/campaign.toml: the model does not explain <1> of the records" in shown
+    assert "<code>/data/no/campaign.toml</code>: the model does not explain &lt;1&gt; of the records" in page
+    assert fleet.document()["rejected"] == dict(fleet.rejected)
+
+
+def test_units_are_those_of_the_table(disturbed: FleetType) -> None:
+    page = fleet_html(fleet_of(disturbed))
+    assert "kg m^2" not in page
+    assert "I_yy, kg m²" in page
 
 
 def test_the_pictures_describe_themselves(disturbed: FleetType) -> None:

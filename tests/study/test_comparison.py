@@ -15,11 +15,14 @@ import sprung
 from command_line import Run, run
 from layouts import check_view_is_whole
 from sprung.errors import InputError
-from sprung.report import comparison_view
+from sprung.report import comparison_view, differences_picture, text_of
 from sprung.study.scatter import estimate_scatter
 from sprung.study.significance import holm, joint_test
 from sprung.uncertainty import KnownValue
 from sprung.vehicle import TABLE_1_CAR, Vehicle
+
+PLANE = ("m_s", "I_yy", "m_uf", "m_ur", "k_sf", "k_sr", "k_tf", "k_tr", "c_sf", "c_sr", "a", "b")
+"""Parameters of a pitch plane."""
 
 WORN = Vehicle.from_parameters(TABLE_1_CAR.parameters | {"c_sf": 1400.0}, name="worn car")
 
@@ -178,6 +181,32 @@ def test_about_other_axes_inertias_are_not_compared(same: list[sprung.Result]) -
     assert found.parameters["m_s"].differences[0].p is not None
 
 
+def test_parts_of_a_vehicle_are_not_compared_with_another_part(same: list[sprung.Result]) -> None:
+    """The spring of a pitch plane is two springs of the whole vehicle: a difference of 100 % would be certain."""
+    plane = Vehicle.from_parameters(
+        {
+            name: TABLE_1_CAR.parameters[name] * (1 + (name[:2] in ("m_", "k_", "c_") and name != "m_s"))
+            for name in PLANE
+        }
+    )
+    other = identified(plane, 7)
+    found = sprung.compare([same[0], other, *same[1:4]], names=["car", "plane", "2", "3", "4"])
+    assert found.parameters["k_sf"].values[1].value == pytest.approx(34000, rel=0.05)
+    rows = {**found.parameters, **found.modes}
+    assert {row.differences[0].finding for row in rows.values()} == {"not comparable"}
+    why = {row.differences[0].why for row in rows.values()}
+    assert why == {"a whole vehicle and a pitch plane: the same name means another quantity"}
+    assert found.joint[0] is None
+    assert any("car is of a whole vehicle, plane of a pitch plane" in note for note in found.notes)
+    assert not any("heights" in note or "different models" in note for note in found.notes)
+    # The others are compared as ever, and scatter is that of the whole vehicles.
+    assert found.parameters["k_sf"].differences[1].p is not None
+    assert {scatter.names for scatter in found.scatter.values()} == {("car", "2", "3", "4")}
+    shown = " ".join(text_of(comparison_view(found)).split())
+    assert shown.count("(a whole vehicle and a pitch plane: the same name means another quantity).") == 1
+    assert differences_picture(sprung.compare([same[0], other])) is None
+
+
 def test_the_same_result_twice_is_noticed(same: list[sprung.Result]) -> None:
     found = sprung.compare([same[0], same[0]])
     assert any("are the same result" in note for note in found.notes)
@@ -217,7 +246,7 @@ def test_scatter_is_what_was_put_in() -> None:
 
 
 def test_nothing_to_compare_is_said(same: list[sprung.Result]) -> None:
-    with pytest.raises(InputError, match="found 1 results; expected two or more"):
+    with pytest.raises(InputError, match="found 1 result; expected two or more"):
         sprung.compare(same[:1])
     with pytest.raises(InputError, match="expected two or more"):
         sprung.compare("results")

@@ -5,11 +5,12 @@ from sprung.batch.dask_workers import DaskWorkers
 from sprung.batch.executor import Executor, choose_executor
 from sprung.batch.local_workers import LocalWorkers
 from sprung.batch.locking import folder_lock
-from sprung.batch.run import BatchSummary, run_batch
+from sprung.batch.run import DONE, BatchSummary, run_batch
 from sprung.batch.shards import ShardFolder, read_rows, write_table
 from sprung.batch.task import Columns, Failure, Kind, Row, Task, Work, canonical_text, content_key
 
 __all__ = [
+    "DONE",
     "BatchCounts",
     "BatchStep",
     "BatchSummary",

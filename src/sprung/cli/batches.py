@@ -66,7 +66,10 @@ def fleet(
     ] = None,
     one_type: Annotated[
         bool,
-        typer.Option("--one-type", help="Compare all vehicles with each other, not only those of the same name."),
+        typer.Option(
+            "--one-type",
+            help="Compare all vehicles of one [vehicle] model with each other, not only those of the same name.",
+        ),
     ] = False,
     retry: Retry = False,
     force: Force = False,
@@ -86,7 +89,10 @@ def fleet(
         )
         if not found.counts.done:
             expected, do = "a campaign that can be identified", "Correct it: its row is replaced by the next run."
-            raise InputError(Problem(*failure, expected, do) for failure in found.failures.items())
+            raise InputError(
+                Problem(campaign, f"no result ({' '.join(message.splitlines())})", expected, do)
+                for campaign, message in found.failures.items()
+            )
         progress(Step("drawing the page"))
         written = sprung.report.write_fleet(found, output, overwrite=force)
     if as_json:

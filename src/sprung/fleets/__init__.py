@@ -22,9 +22,10 @@ from sprung.fleets.run_length import (
     clipping_radius,
 )
 from sprung.fleets.scores import Scores, hypothesis_scores, largest_component, score_vehicles
-from sprung.fleets.survey import FleetType, ParameterSpread, in_test_order, survey_types
+from sprung.fleets.survey import ALL_VEHICLES, FleetType, ParameterSpread, Survey, in_test_order, survey_types
 
 __all__ = [
+    "ALL_VEHICLES",
     "COLUMNS",
     "CONTENT",
     "FEWEST",
@@ -48,6 +49,7 @@ __all__ = [
     "Quantity",
     "RigAlarm",
     "Scores",
+    "Survey",
     "VehicleAlarm",
     "VehicleEstimates",
     "alarm_limit",

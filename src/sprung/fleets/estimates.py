@@ -19,6 +19,9 @@ _FLOOR = 1e-4
 """Standard deviation that every coordinate is given in addition, relative: exact constraints, such as a measured
 wheelbase, would make covariance matrices singular."""
 
+_EXACT = 1e-6
+"""Standard deviation below which a coordinate is exact, and difference below which two are equal, relative: rounding errors."""
+
 _ABSENT = 10.0
 """Standard deviation of a coordinate of which a vehicle tells nothing, relative."""
 
@@ -67,9 +70,12 @@ class FleetEstimates:
     positions
         Coordinates, dimensionless, shape (vehicle, parameter).
     covariances
-        Of the coordinates of each vehicle, dimensionless, shape (vehicle, parameter, parameter).
+        Of the coordinates of each vehicle, dimensionless, shape (vehicle, parameter, parameter); with a floor of 0.01 %, which
+        exact values need to be inverted.
     known
         Whether the model of a vehicle has the parameter, shape (vehicle, parameter).
+    exact
+        Whether its value was known exactly before the test, shape (vehicle, parameter).
     """
 
     campaigns: tuple[str, ...]
@@ -80,11 +86,22 @@ class FleetEstimates:
     positions: Real
     covariances: Real
     known: NDArray[np.bool_]
+    exact: NDArray[np.bool_]
 
     @property
     def count(self) -> int:
         """Number of vehicles."""
         return len(self.campaigns)
+
+    @property
+    def own_stds(self) -> Real:
+        """Standard uncertainties of the coordinates, 0 where known exactly; dimensionless, shape (vehicle, parameter)."""
+        return np.where(self.exact, 0.0, np.sqrt(np.diagonal(self.covariances, axis1=1, axis2=2)))
+
+    @property
+    def constant(self) -> NDArray[np.bool_]:
+        """Whether every vehicle has one and the same value of a parameter, known exactly; shape (parameter,)."""
+        return np.asarray(self.exact.all(axis=0) & (np.ptp(self.positions, axis=0) < _EXACT))
 
     def only(self, chosen: NDArray[np.bool_]) -> FleetEstimates:
         """Return some of the vehicles.
@@ -101,6 +118,7 @@ class FleetEstimates:
             positions=self.positions[chosen],
             covariances=self.covariances[chosen],
             known=self.known[chosen],
+            exact=self.exact[chosen],
         )
 
     def values(self, positions: Real) -> Real:
@@ -171,6 +189,7 @@ def collect_estimates(rows: Iterable[Row]) -> FleetEstimates | None:
     if "a" in place and "b" in place:
         names = tuple(WHEELBASE if name == "b" else name for name in names)
         positions, covariances = _with_wheelbase(positions, covariances, place["a"], place["b"])
+    exact = known & (np.diagonal(covariances, axis1=1, axis2=2) < _EXACT**2)
     covariances = (covariances + covariances.transpose(0, 2, 1)) / 2 + _FLOOR**2 * np.eye(width)
     return FleetEstimates(
         campaigns=tuple(row["campaign"] for row in usable),
@@ -181,6 +200,7 @@ def collect_estimates(rows: Iterable[Row]) -> FleetEstimates | None:
         positions=positions,
         covariances=covariances,
         known=known,
+        exact=exact,
     )
 
 

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import os
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import closing
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from sprung.batch import (
+    DONE,
     BatchCounts,
     Columns,
     Row,
@@ -73,11 +75,16 @@ class Fleet:
     verdicts
         Number of campaigns by verdict.
     failures
-        Messages by campaign, of those without a result.
+        Messages by campaign, of those without a result; a line for each problem.
+    rejected
+        First reasons of the verdict by campaign, of those that are rejected.
     types
         What the vehicles of each type tell together.
     small_types
         Number of vehicles by name, of types with too few of them.
+    parts
+        By name, of those whose vehicles are not all of one part of a vehicle (``[vehicle] model``): number of vehicles by
+        part, each of which is a type of its own.
     """
 
     folder: Path
@@ -86,8 +93,10 @@ class Fleet:
     gone: tuple[str, ...]
     verdicts: Mapping[str, int]
     failures: Mapping[str, str]
+    rejected: Mapping[str, str]
     types: tuple[FleetType, ...]
     small_types: Mapping[str, int] = field(default_factory=dict)
+    parts: Mapping[str, Mapping[str, int]] = field(default_factory=dict)
 
     def to_dataframe(self) -> pd.DataFrame:
         """Return the rows as a table, without columns that are empty in all of them."""
@@ -106,8 +115,10 @@ class Fleet:
             "gone": list(self.gone),
             "verdicts": dict(self.verdicts),
             "failures": dict(self.failures),
+            "rejected": dict(self.rejected),
             "types": [one.document() for one in self.types],
             "small_types": dict(self.small_types),
+            "parts": {name: dict(counts) for name, counts in self.parts.items()},
         }
 
 
@@ -140,7 +151,8 @@ def fleet(
     tracks, extras, fall
         As for `sprung.identify`, for every campaign.
     one_type
-        Whether all vehicles are of one type. By default those of one name (``[vehicle] name``) are.
+        Whether all vehicles are of one type. By default those of one name (``[vehicle] name``) are. Different parts of a
+        vehicle (``[vehicle] model``) are different types in any case.
     retry
         Whether campaigns that could not be identified are tried again although nothing has changed.
     progress
@@ -159,10 +171,11 @@ def fleet(
     paths = find_campaigns(source)
     options: dict[str, Any] = {"tracks": tracks, "extras": _listed(extras), "fall": fall}
     folder = Path(output)
-    with folder_lock(folder):
+    # The workers come first: where a cluster does not answer, no folder is made.
+    with closing(choose_executor(identify_row, workers, scheduler)) as executor, folder_lock(folder):
         summary = run_batch(
             _tasks(paths, options),
-            choose_executor(identify_row, workers, scheduler),
+            executor,
             folder,
             COLUMNS,
             CONTENT,
@@ -171,12 +184,11 @@ def fleet(
             progress=progress,
         )
         progress(Step("comparing the vehicles"))
-        verdicts: Counter[str] = Counter()
-        failures: dict[str, str] = {}
-        types, small = survey_types(_watched(folder, verdicts, failures), one_type)
-        rows = [row for one in types for row in one.rows()]
+        found = survey_types(_with_arrays(read_rows(folder, NEEDED)), one_type)
+        rows = [row for one in found.types for row in one.rows()]
         write_table(folder / HIERARCHICAL_FOLDER, "estimates", rows, HIERARCHICAL_COLUMNS)
-    return Fleet(folder, summary.counts, summary.computed, summary.gone, dict(verdicts), failures, types, small)
+        outcomes = _outcomes(folder)
+    return Fleet(folder, summary.counts, summary.computed, summary.gone, *outcomes, *found)
 
 
 def _listed(extras: str | Sequence[str] | None) -> list[str] | None:
@@ -188,13 +200,31 @@ def _tasks(paths: Sequence[Path], options: dict[str, Any]) -> Iterator[Task]:
         yield Task(path.as_posix(), campaign_key(path, options), (str(path), options))
 
 
-def _watched(folder: Path, verdicts: Counter[str], failures: dict[str, str]) -> Iterator[Row]:
-    """Yield the rows; count verdicts and collect failures on the way."""
-    for row in read_rows(folder, (*NEEDED, "message")):
-        if row["status"] != "done":
-            failures[row["campaign"]] = row["message"]
+class _Outcomes(NamedTuple):
+    """What came of the campaigns, as the fields of `Fleet` state it."""
+
+    verdicts: Mapping[str, int]
+    failures: Mapping[str, str]
+    rejected: Mapping[str, str]
+
+
+def _outcomes(folder: Path) -> _Outcomes:
+    verdicts: Counter[str] = Counter()
+    failures, rejected = {}, {}
+    for row in read_rows(folder, ("campaign", "status", "message", "verdict", "reasons")):
+        campaign = row["campaign"]
+        if row["status"] != DONE:
+            # A message about the campaign file itself begins with its path, which is the key here.
+            failures[campaign] = row["message"].removeprefix(f"{Path(campaign)}: ")
             continue
         verdicts[row["verdict"]] += 1
-        for name in ("position", "covariance"):  # arrays take an eighth of the memory of lists
-            row[name] = None if row[name] is None else np.array(row[name])
-        yield row
+        if row["verdict"] == "reject":
+            rejected[campaign] = next(iter(row["reasons"] or ()), "")
+    return _Outcomes(dict(verdicts), failures, rejected)
+
+
+def _with_arrays(rows: Iterable[Row]) -> Iterator[Row]:
+    """Yield rows with their numbers as arrays, which take an eighth of the memory of lists."""
+    for row in rows:
+        arrays = {name: None if row[name] is None else np.array(row[name]) for name in ("position", "covariance")}
+        yield {**row, **arrays}

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,8 +16,12 @@ from sprung.fleets.charts import ControlChart, chart_vehicles
 from sprung.fleets.estimates import FleetEstimates, collect_estimates, quantity_of
 from sprung.fleets.population import FEWEST, Population, VehicleEstimates, estimate_vehicles
 from sprung.uncertainty import NORMAL_95
+from sprung.vehicle import PART_NAMES, layout_of
 
 Real = NDArray[np.float64]
+
+ALL_VEHICLES = "all vehicles"
+"""Name of the type of all vehicles, whatever their own names."""
 
 
 @shown
@@ -39,6 +43,8 @@ class ParameterSpread:
         where most tests do not determine it.
     limits
         Within them is a vehicle in control with a probability of 95 %, tested with the median uncertainty; SI.
+    exact
+        Whether every vehicle has this value, known exactly before its test; spread and uncertainties are then 0.
     """
 
     unit: str
@@ -49,6 +55,7 @@ class ParameterSpread:
     error: float | None
     hierarchical_error: float
     limits: tuple[float, float]
+    exact: bool = False
 
 
 @shown
@@ -80,10 +87,12 @@ class FleetType:
     def parameters(self) -> dict[str, ParameterSpread]:
         """Spread and errors of each parameter, by name."""
         own, population = self.estimates, self.population
-        stds = np.sqrt(np.diagonal(own.covariances, axis1=1, axis2=2))
-        error, hierarchical = np.median(stds, axis=0), np.median(self.hierarchical.stds, axis=0)
-        mean_stds = np.sqrt(np.diag(population.mean_covariance))
-        half = NORMAL_95 * np.sqrt(population.std**2 + mean_stds**2 + np.where(error < 1, error, 0.0) ** 2)
+        varies = np.where(own.constant, 0.0, 1.0)
+        error = np.median(own.own_stds, axis=0)
+        hierarchical = np.median(np.where(own.exact, 0.0, self.hierarchical.stds), axis=0)
+        mean_stds = varies * np.sqrt(np.diag(population.mean_covariance))
+        spread = varies * population.std
+        half = NORMAL_95 * np.sqrt(spread**2 + mean_stds**2 + np.where(error < 1, error, 0.0) ** 2)
         means = own.values(population.mean)
         low, high = own.values(population.mean - half), own.values(population.mean + half)
         mean_uncertainties = own.stds(population.mean, mean_stds)
@@ -92,11 +101,12 @@ class FleetType:
                 quantity_of(name).unit,
                 float(means[j]),
                 float(mean_uncertainties[j]),
-                float(100 * population.std[j]),
-                float(100 * population.std[j] * population.std_error[j]),
+                float(100 * spread[j]),
+                float(100 * spread[j] * population.std_error[j]),
                 float(100 * error[j]) if error[j] < 1 else None,
                 float(100 * hierarchical[j]),
                 (float(low[j]), float(high[j])),
+                bool(own.constant[j]),
             )
             for j, name in enumerate(own.names)
         }
@@ -110,9 +120,12 @@ class FleetType:
             With the columns of `sprung.fleets.HIERARCHICAL_COLUMNS`, SI.
         """
         own, joint = self.estimates, self.hierarchical
-        single_stds = np.sqrt(np.diagonal(own.covariances, axis1=1, axis2=2))
+        single_stds = own.own_stds
         values, stds = own.values(own.positions), own.stds(own.positions, single_stds)
-        joint_values, joint_stds = own.values(joint.positions), own.stds(joint.positions, joint.stds)
+        # What is known exactly is not shared out; the floor of its covariance would move it by a rounding error.
+        joint_positions = np.where(own.exact, own.positions, joint.positions)
+        joint_stds = own.stds(joint_positions, np.where(own.exact, 0.0, joint.stds))
+        joint_values = own.values(joint_positions)
         deviating = {alarm.campaign for alarm in self.chart.vehicle_alarms}
         rows: list[Row] = []
         for i, (campaign, label) in enumerate(zip(own.campaigns, own.labels, strict=True)):
@@ -152,34 +165,59 @@ class FleetType:
         }
 
 
-def survey_types(rows: Iterable[Row], one_type: bool = False) -> tuple[tuple[FleetType, ...], Mapping[str, int]]:
-    """Return the types of a fleet, and the names of those with too few vehicles.
+class Survey(NamedTuple):
+    """What the vehicles of a fleet tell, type by type.
+
+    Attributes
+    ----------
+    types
+        In the order of their names.
+    small
+        Number of vehicles by name, of types with fewer than three.
+    parts
+        By name, of those whose vehicles are not all of one part of a vehicle: number of vehicles by part, each of which is a
+        type of its own.
+    """
+
+    types: tuple[FleetType, ...]
+    small: Mapping[str, int]
+    parts: Mapping[str, Mapping[str, int]]
+
+
+def survey_types(rows: Iterable[Row], one_type: bool = False) -> Survey:
+    """Return the types of a fleet: vehicles of one name and of one part of a vehicle.
 
     Parameters
     ----------
     rows
         With the columns of `NEEDED`.
     one_type
-        Whether all vehicles are of one type; otherwise those of one name are.
+        Whether all vehicles of one part are of one type; otherwise those of one name are.
 
     Returns
     -------
-    types
-        In the order of their names.
-    small
-        Number of vehicles by name, of types with fewer than three.
+    Survey
     """
-    groups: dict[str, list[Row]] = {}
+    by_name: dict[str, dict[str, list[Row]]] = {}
     for row in rows:
         if row["status"] == "done" and row["coordinates"]:
-            groups.setdefault("all vehicles" if one_type else row["vehicle"] or "unnamed", []).append(row)
+            name = ALL_VEHICLES if one_type else row["vehicle"] or "unnamed"
+            part = PART_NAMES[layout_of(row["coordinates"]).model]
+            by_name.setdefault(name, {}).setdefault(part, []).append(row)
+    parts = {
+        name: {part: len(group) for part, group in sorted(groups.items())}
+        for name, groups in sorted(by_name.items())
+        if len(groups) > 1
+    }
     types, small = [], {}
-    for name, group in sorted(groups.items()):
-        if len(group) < FEWEST:
-            small[name] = len(group)
-        elif (estimates := collect_estimates(in_test_order(group))) is not None:
-            types.append(_survey(name, estimates))
-    return tuple(types), small
+    for name, groups in sorted(by_name.items()):
+        for part, group in sorted(groups.items()):
+            label = f"{name}, {part}" if name in parts else name
+            if len(group) < FEWEST:
+                small[label] = len(group)
+            elif (estimates := collect_estimates(in_test_order(group))) is not None:
+                types.append(_survey(label, estimates))
+    return Survey(tuple(types), small, parts)
 
 
 def _survey(name: str, estimates: FleetEstimates) -> FleetType:

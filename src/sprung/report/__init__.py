@@ -44,9 +44,10 @@ from sprung.report.sketch.svg import sketch_svg
 from sprung.report.terminal.check import check_view
 from sprung.report.terminal.comparison import comparison_view
 from sprung.report.terminal.draft import draft_view
-from sprung.report.terminal.fleet import fleet_view, monte_carlo_view
+from sprung.report.terminal.fleet import fleet_view
 from sprung.report.terminal.layout import text_of
 from sprung.report.terminal.modal import modes_view
+from sprung.report.terminal.monte_carlo import monte_carlo_view
 from sprung.report.terminal.paper import paper_view
 from sprung.report.terminal.plan import plan_view
 from sprung.report.terminal.result import result_view

@@ -6,8 +6,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from sprung.display import count_text
 from sprung.errors import Problems
 from sprung.results import Result, load
+from sprung.study.comparability import ABSENT, contradiction_of, part_of, unit_of, value_of
 from sprung.study.comparison import ComparedResult, Comparison, Difference, Finding, QuantityComparison, ResultValue
 from sprung.study.scatter import complete_rows, estimate_scatter
 from sprung.study.significance import JointTest, holm, joint_test, two_sided
@@ -18,9 +20,6 @@ LIKELY, CERTAIN = 0.05, 0.001
 """Probabilities, corrected for the number of comparisons, below which a difference is called likely and certain."""
 
 _PER_MASS = " / total mass"
-_ABSENT = "has another model"
-_ABOUT_AXES = ("I_xx", "I_yy")
-"""Inertias, which can be compared only if they refer to the same axes."""
 
 
 def compare(results: Sequence[Result | str | Path], *, names: Sequence[str] | None = None) -> Comparison:
@@ -85,7 +84,11 @@ def compare(results: Sequence[Result | str | Path], *, names: Sequence[str] | No
         joint=tuple(_test_jointly(read[0], other, parameters, i) for i, other in enumerate(read[1:])),
         scatter=estimate_scatter(
             {
-                name: complete_rows((label, own.value, own.std) for label, own in zip(labels, row.values, strict=True))
+                name: complete_rows(
+                    (label, own.value, own.std)
+                    for label, own, result in zip(labels, row.values, read, strict=True)
+                    if not contradiction_of(read[0], result, "" if name in modes else name.removesuffix(_PER_MASS))
+                )
                 for name, row in {**parameters, **modes}.items()
             }
         ),
@@ -96,7 +99,7 @@ def compare(results: Sequence[Result | str | Path], *, names: Sequence[str] | No
 def _check_arguments(results: Sequence[object], names: Sequence[str] | None) -> None:
     problems = Problems()
     if isinstance(results, str | Path | Result) or len(results) < 2:  # a string is a sequence too
-        found = "one result" if isinstance(results, str | Path | Result) else f"{len(results)} results"
+        found = count_text(1 if isinstance(results, str | Path | Result) else len(results), "result")
         problems.add("compare", found, "two or more", "Name the results folders to compare.")
     elif names is not None and (len(names) != len(results) or len(set(names)) != len(names)):
         found = f"the names {', '.join(names)} for {len(results)} results"
@@ -138,10 +141,10 @@ def _parameter_rows(read: Sequence[Result], labels: Sequence[str], ratios: bool)
     rows = {}
     for name in names:
         per_mass = ratios and name in PARAMETERS and PARAMETERS[name].scales
-        values = tuple(_value(result, name, per_mass) for result in read)
-        unit = next((unit for result in read if (unit := _unit(result, name, per_mass))), "")
+        values = tuple(value_of(result, name, per_mass) for result in read)
+        unit = next((unit for result in read if (unit := unit_of(result, name, per_mass))), "")
         differences = tuple(
-            _difference(values[0], other, labels, i, _contradiction(read[0], read[i], name))
+            _difference(values[0], other, labels, i, contradiction_of(read[0], read[i], name))
             for i, other in enumerate(values[1:], start=1)
         )
         rows[name + _PER_MASS * per_mass] = QuantityComparison(unit, values, differences)
@@ -152,52 +155,16 @@ def _is_profiled(result: Result, name: str) -> bool:
     return name in result.derived and result.derived[name].interval_from == "profile"
 
 
-def _value(result: Result, name: str, per_mass: bool) -> ResultValue:
-    if result.verdict.state == "reject":
-        return ResultValue(None, None, "was rejected")
-    estimate = result.parameters.get(name) or result.derived.get(name)
-    if estimate is None:
-        return ResultValue(None, None, _ABSENT)
-    if per_mass:
-        ratio = result.scale.per_total_mass.get(name)
-        return (
-            ResultValue(ratio.value, ratio.std)
-            if ratio is not None
-            else ResultValue(None, None, "does not determine it")
-        )
-    return ResultValue(estimate.value, estimate.std, "" if estimate.value is not None else "does not determine it")
-
-
-def _unit(result: Result, name: str, per_mass: bool) -> str | None:
-    if per_mass:
-        ratio = result.scale.per_total_mass.get(name)
-        return None if ratio is None else ratio.unit
-    estimate = result.parameters.get(name) or result.derived.get(name)
-    return None if estimate is None else estimate.unit
-
-
-def _contradiction(first: Result, second: Result, name: str) -> str:
-    """Return why a quantity of two results is not comparable; empty where it is."""
-    units = [_unit(result, name, False) for result in (first, second)]
-    if None not in units and units[0] != units[1]:
-        return f"units {units[0]} and {units[1]}"
-    if "reject" in (first.verdict.state, second.verdict.state):
-        return ""  # a rejected result has no values
-    if name in _ABOUT_AXES and first.fit.axes != second.fit.axes:
-        return "different axes, because the campaigns give different heights"
-    return ""
-
-
 def _difference(
     first: ResultValue, second: ResultValue, labels: Sequence[str], i: int, contradiction: str
 ) -> Difference:
-    if first.why_not == second.why_not == _ABSENT:
+    if first.why_not == second.why_not == ABSENT:
         return Difference()
     reasons = [
         f"{label} {value.why_not}" for label, value in ((labels[0], first), (labels[i], second)) if value.why_not
     ]
-    if reasons or contradiction:
-        return Difference(why="; ".join((*reasons, *((contradiction,) if contradiction else ()))))
+    if contradiction or reasons:
+        return Difference(why=contradiction or "; ".join(reasons))
     if first.value is None or second.value is None or first.std is None or second.std is None:
         return Difference(why="has no uncertainty")
     value, std = second.value - first.value, (first.std**2 + second.std**2) ** 0.5
@@ -218,7 +185,8 @@ def _mode_rows(read: Sequence[Result], labels: Sequence[str]) -> dict[str, Quant
                     _mode_value(result, modes.get(mode), quantity) for result, modes in zip(read, by_name, strict=True)
                 )
                 differences = tuple(
-                    _difference(values[0], other, labels, i, "") for i, other in enumerate(values[1:], start=1)
+                    _difference(values[0], other, labels, i, contradiction_of(read[0], read[i]))
+                    for i, other in enumerate(values[1:], start=1)
                 )
                 rows[f"{load_name}, {mode}, {quantity.replace('_', ' ')}"] = QuantityComparison(
                     unit, values, differences
@@ -271,7 +239,12 @@ def _notes(read: Sequence[Result], labels: Sequence[str], ratios: bool) -> Itera
         )
     first = read[0]
     for label, result in zip(labels[1:], read[1:], strict=True):
-        if (result.fit.model, result.fit.tracks) != (first.fit.model, first.fit.tracks):
+        if part_of(result) != part_of(first):
+            yield (
+                f"{labels[0]} is of a {part_of(first)}, {label} of a {part_of(result)}: parameters and modes are compared only "
+                "between results with the same [vehicle] model"
+            )
+        elif (result.fit.model, result.fit.tracks) != (first.fit.model, first.fit.tracks):
             yield (
                 f"{labels[0]} and {label} were fitted with different models ({_model(first)}; {_model(result)}): a model term "
                 "changes the other parameters; identify both with the same [model]"

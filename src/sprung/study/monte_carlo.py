@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import tempfile
 from collections.abc import Iterator, Mapping
-from contextlib import ExitStack
+from contextlib import ExitStack, closing
 from dataclasses import asdict, dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
@@ -37,6 +37,9 @@ from sprung.vehicle import Vehicle, evaluate_quantity
 
 if TYPE_CHECKING:
     import pandas as pd
+
+_SUM = 8
+"""Digits of a checksum that tells two studies apart."""
 
 VERDICTS = ("accept", "doubtful", "reject")
 
@@ -163,14 +166,16 @@ def monte_carlo(
     what = canonical_text([true, arguments, seed])
     _simulated(true, arguments, seed, 0)  # whatever is wrong with the test is wrong with all campaigns
     with ExitStack() as stack:
+        # The workers come first: where a cluster does not answer, no folder is made.
+        executor = stack.enter_context(closing(choose_executor(identify_simulated, jobs, scheduler)))
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory()) if output is None else output)
         stack.enter_context(folder_lock(folder))
         summary = run_batch(
             _tasks(true, arguments, seed, n, what),
-            choose_executor(identify_simulated, jobs, scheduler),
+            executor,
             folder,
             COLUMNS,
-            f"a Monte Carlo study ({content_key([what])})",
+            _content(true, arguments, seed),
             total=n,
             retry=retry,
             progress=progress,
@@ -233,6 +238,15 @@ def _tasks(vehicle: Vehicle, arguments: dict[str, Any], seed: int, n: int, what:
     for i in range(n):
         key = content_key([version("sprung"), what, str(i)])
         yield Task(str(i + 1), key, (vehicle, arguments, seed, i))
+
+
+def _content(vehicle: Vehicle, arguments: Mapping[str, Any], seed: int) -> str:
+    """Describe a study so that two descriptions show what differs: what is long has a checksum of its own."""
+    numbers = {name: value for name, value in arguments.items() if type(value) in (int, float)}
+    others = {name: value for name, value in arguments.items() if name not in numbers}
+    stated = "".join(f"{name} {value:g}, " for name, value in sorted(numbers.items()))
+    sums = [content_key([canonical_text(part)])[:_SUM] for part in (vehicle, others)]
+    return f"a Monte Carlo study (vehicle {vehicle.name}, checksum {sums[0]}; {stated}other options {sums[1]}; seed {seed})"
 
 
 def identify_simulated(argument: tuple[Vehicle, dict[str, Any], int, int]) -> Row:

@@ -7,11 +7,16 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.stats import t
 
 from sprung.batch import Row
 from sprung.display import shown
+from sprung.study.significance import two_sided
 from sprung.uncertainty import NORMAL_95
 from sprung.vehicle import PARAMETERS
+
+_SIGNIFICANT = two_sided(3.0)
+"""Two-sided probability below which a bias is significant: 0.27 %, that of three standard deviations."""
 
 
 @shown
@@ -69,6 +74,13 @@ class ParameterAccuracy:
     scatter_std: float | None
     stated: float | None
     coverage: Share
+
+    @property
+    def is_biased(self) -> bool:
+        """Whether the bias is significant: Student's t with the two-sided probability of three standard deviations."""
+        if self.bias is None or self.bias_std is None:
+            return False
+        return bool(abs(self.bias) > t.isf(_SIGNIFICANT / 2, self.estimated - 1) * self.bias_std)
 
 
 def share(count: int, of: int) -> Share:

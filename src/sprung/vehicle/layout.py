@@ -106,6 +106,14 @@ LAYOUTS: Mapping[VehicleModel, Layout] = {
 }
 """Every layout by the name of the part of the vehicle."""
 
+PART_NAMES: Mapping[VehicleModel, str] = {
+    "full": "whole vehicle",
+    "pitch-plane": "pitch plane",
+    "roll-plane": "roll plane",
+    "quarter": "quarter car",
+}
+"""Parts of a vehicle as texts name them."""
+
 FULL = LAYOUTS["full"]
 """The paper's."""
 

@@ -15,8 +15,8 @@ from sprung.tables import Table
 FLEET_FILE = "fleet.html"
 """The page's name."""
 
-_MOST_FAILURES = 200
-"""Largest number of campaigns without a result that the page lists."""
+_LISTED = 200
+"""Largest number of campaigns without a result, and of rejected ones, that the page lists."""
 
 
 class TypePart(NamedTuple):
@@ -59,15 +59,18 @@ def fleet_html(fleet: Fleet) -> str:
     """
     types = [_part(number, one) for number, one in enumerate(fleet.types, 1)]
     alarms = sum(len(one.chart.rig_alarms) + len(one.chart.vehicle_alarms) for one in fleet.types)
-    failures = list(fleet.failures.items())
+    failures = [(campaign, message.splitlines()) for campaign, message in fleet.failures.items()]
+    rejected = list(fleet.rejected.items())
     return ENVIRONMENT.get_template("fleet.html").render(
         summary=summary_of(fleet),
-        state="reject" if not fleet.counts.done else "doubtful" if alarms or failures else "accept",
+        state="reject" if not fleet.counts.done else "doubtful" if alarms or failures or rejected else "accept",
         alarms=alarms,
         notes=list(notes_of(fleet)),
         types=types,
-        failures=failures[:_MOST_FAILURES],
-        unlisted=max(len(failures) - _MOST_FAILURES, 0),
+        failures=failures[:_LISTED],
+        unlisted=max(len(failures) - _LISTED, 0),
+        rejected=rejected[:_LISTED],
+        unlisted_rejected=max(len(rejected) - _LISTED, 0),
         version=version("sprung"),
         macros=ENVIRONMENT.get_template("macros.html").module,
     )
@@ -81,5 +84,5 @@ def _part(number: int, one: FleetType) -> TypePart:
         alarms=tuple(alarm_sentences(one)),
         table=spread_table(one),
         overview=(pictures["rig"], pictures["vehicle"], pictures["spread"]),
-        parameters=tuple(pictures[name] for name in one.estimates.names),
+        parameters=tuple(pictures[name] for name in one.estimates.names if name in pictures),
     )

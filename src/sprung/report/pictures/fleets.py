@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from sprung.fleets import FleetType
 from sprung.report.drawing.axis import Axis, axis_limits
 from sprung.report.drawing.picture import Curve, Mark, Panel, Picture, Points, Rule
+from sprung.tables import unit_text
 from sprung.uncertainty import NORMAL_95
 
 Real = NDArray[np.float64]
@@ -29,10 +30,11 @@ def fleet_pictures(one: FleetType) -> dict[str, Picture]:
     Returns
     -------
     dict
-        By ``spread``, ``rig``, ``vehicle`` and, for each parameter, its name.
+        By ``spread``, ``rig``, ``vehicle`` and, for each parameter that is not the same exact value in all, its name.
     """
     pictures = {"spread": _spread(one), "rig": _rig(one), "vehicle": _vehicle(one)}
-    return pictures | {name: _parameter(one, j) for j, name in enumerate(one.estimates.names)}
+    names = enumerate(one.estimates.names)
+    return pictures | {name: _parameter(one, j) for j, name in names if not one.parameters[name].exact}
 
 
 def _numbers(one: FleetType) -> Axis:
@@ -41,13 +43,14 @@ def _numbers(one: FleetType) -> Axis:
 
 def _spread(one: FleetType) -> Picture:
     """Draw the spread between vehicles beside the errors of their tests."""
-    parameters = one.parameters
+    parameters = {name: spread for name, spread in one.parameters.items() if not spread.exact}
     places = {name: float(len(parameters) - i) for i, name in enumerate(parameters)}
     y = np.array(list(places.values()))
-    own = np.array([np.nan if one.error is None else one.error for one in parameters.values()])
-    joint = np.array([one.hierarchical_error for one in parameters.values()])
+    # Neither what is not determined nor what is known exactly has a place on a logarithmic axis.
+    own = np.array([one.error or np.nan for one in parameters.values()])
+    joint = np.array([one.hierarchical_error or np.nan for one in parameters.values()])
     between = np.array([one.spread for one in parameters.values()])
-    seen = np.concatenate([between, own[np.isfinite(own)], joint])
+    seen = np.concatenate([between, own, joint])
     seen = seen[seen > 0]
     low, high = float(seen.min()) / 1.5, float(seen.max()) * 2
     half = NORMAL_95 * np.array([one.spread_std for one in parameters.values()])
@@ -125,12 +128,11 @@ def _parameter(one: FleetType, j: int) -> Picture:
     """Draw each vehicle's own estimate with its error, its estimate with the others, mean and limits."""
     own, joint, name = one.estimates, one.hierarchical, one.estimates.names[j]
     spread = one.parameters[name]
-    stds = np.sqrt(own.covariances[:, j, j])
-    shown = own.known[:, j] & (stds < 1)
+    shown = own.known[:, j] & (own.own_stds[:, j] < 1)
     numbers = np.arange(1, own.count + 1, dtype=float)
     values, value_stds = (
         own.values(own.positions)[:, j],
-        own.stds(own.positions, np.sqrt(_diagonals(own.covariances)))[:, j],
+        own.stds(own.positions, own.own_stds)[:, j],
     )
     joint_values = own.values(joint.positions)[:, j]
     few = own.count <= _DOTS
@@ -149,18 +151,14 @@ def _parameter(one: FleetType, j: int) -> Picture:
     seen = [joint_values, np.array(spread.limits), *([values[shown]] if shown.any() else [])]
     if few and shown.any():
         seen += [values[shown] + sign * NORMAL_95 * value_stds[shown] for sign in (-1, 1)]
-    unit = "" if spread.unit == "1" else f", {spread.unit}"
-    panel = Panel(Axis(f"{name}{unit}", *axis_limits(*seen)), tuple(marks), height=1.5)
+    label = ", ".join(filter(None, (name, unit_text(spread.unit))))
+    panel = Panel(Axis(label, *axis_limits(*seen)), tuple(marks), height=1.5)
     return Picture(
         name,
         _numbers(one),
         (panel,),
         f"{name} of each vehicle, from its own test and together with the others; mean and 95 % limits as lines.",
     )
-
-
-def _diagonals(matrices: Real) -> Real:
-    return np.diagonal(matrices, axis1=1, axis2=2)
 
 
 def _alarmed(one: FleetType, name: str) -> NDArray[np.intp]:

@@ -1,16 +1,16 @@
-"""A fleet and a Monte Carlo study, for the terminal; the tables are those of the page too."""
+"""A fleet, for the terminal; the table is that of the page too."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from sprung.fleets import Deviation, Fleet, FleetType
+from sprung.display import count_text
+from sprung.fleets import ALL_VEHICLES, Deviation, Fleet, FleetType, ParameterSpread
 from sprung.report.terminal.layout import hanging_text, render_table
 from sprung.report.terminal.result import COLOURS
-from sprung.study import MonteCarlo, ParameterAccuracy, Share
 from sprung.tables import Table, percent_text, unit_text
 from sprung.uncertainty import round_by_uncertainty
 
@@ -36,15 +36,22 @@ def fleet_view(fleet: Fleet) -> RenderableType:
     """
     parts: list[RenderableType] = [Text(summary_of(fleet), style="bold")]
     parts += [hanging_text("  - ", note) for note in notes_of(fleet)]
-    failures = list(fleet.failures.items())
-    for campaign, message in failures[:_LISTED]:
-        parts.append(hanging_text("  - ", f"{campaign}: {message}"))
-    if len(failures) > _LISTED:
-        parts.append(hanging_text("  - ", f"and {len(failures) - _LISTED} more: see fleet.json"))
+    for outcomes in (fleet.failures, fleet.rejected):
+        kind = "rejected: " if outcomes is fleet.rejected else ""
+        for campaign, text in list(outcomes.items())[:_LISTED]:
+            parts.append(hanging_text("  - ", f"{kind}{campaign}: {_first_problem(text)}"))
+        if len(outcomes) > _LISTED:
+            parts.append(hanging_text("  - ", f"{kind}and {len(outcomes) - _LISTED} more: see fleet.json"))
     for one in fleet.types:
         parts += [Text(), render_table(spread_table(one))]
         parts += [hanging_text("  - ", sentence) for sentence in alarm_sentences(one)]
     return Group(*parts)
+
+
+def _first_problem(message: str) -> str:
+    """Return the first line of a message, and how many more there are."""
+    first, *others = message.splitlines() or [""]
+    return f"{first} ({count_text(len(others), 'more problem')}: see fleet.html)" if others else first
 
 
 def summary_of(fleet: Fleet) -> str:
@@ -52,53 +59,62 @@ def summary_of(fleet: Fleet) -> str:
     counts = fleet.counts
     verdicts = ", ".join(f"{fleet.verdicts[name]} {name}" for name in COLOURS if fleet.verdicts.get(name))
     there = counts.done + counts.failed - fleet.computed
-    text = f"{counts.done} campaigns identified{f' ({verdicts})' if verdicts else ''}, {counts.failed} failed"
+    identified = count_text(counts.done, "campaign")
+    text = f"{identified} identified{f' ({verdicts})' if verdicts else ''}, {counts.failed} failed"
     return f"{text}; {there} of them in an earlier run." if there else f"{text}."
 
 
 def notes_of(fleet: Fleet) -> Iterator[str]:
     """Yield what is to be said of the campaigns and of types with too few vehicles."""
     if fleet.gone:
+        earlier = count_text(len(fleet.gone), "campaign")
+        yield f"{earlier} of an earlier run not among the given ones, the first {fleet.gone[0]}: kept and included"
+    for name, parts in fleet.parts.items():
+        counts = ", ".join(f"{part} ({count})" for part, count in parts.items())
         yield (
-            f"{len(fleet.gone)} rows are of campaigns that are not among these ones, the first {fleet.gone[0]}: they are kept "
-            "and included"
+            f"{name}: different parts of a vehicle ([vehicle] model) are compared apart, as the same name means another "
+            f"quantity in each: {counts}"
         )
     if fleet.small_types:
         names = ", ".join(f"{name} ({count})" for name, count in list(fleet.small_types.items())[:_LISTED])
         more = f" and {len(fleet.small_types) - _LISTED} more" if len(fleet.small_types) > _LISTED else ""
-        yield (
-            f"too few vehicles of one name to compare: {names}{more}. Give the vehicles of a type one [vehicle] name and each "
-            "its own identification, or compare all: --one-type"
-        )
+        yield f"too few vehicles of one type to compare: {names}{more}"
+        if not all(name.startswith(ALL_VEHICLES) for name in fleet.small_types):
+            yield (
+                "to compare them, give the vehicles of a type one [vehicle] name and each its own identification, or compare "
+                "all: --one-type"
+            )
 
 
 def spread_table(one: FleetType) -> Table:
     """Return the table of a type: mean, spread between vehicles, errors of their tests, limits."""
-    rows = []
-    for name, spread in one.parameters.items():
-        mean, mean_std = round_by_uncertainty(spread.mean, spread.mean_std)
-        digits = len(mean.partition(".")[2])
-        low, high = (f"{limit:.{digits}f}" for limit in spread.limits)
-        rows.append(
-            (
-                name,
-                mean,
-                mean_std,
-                unit_text(spread.unit),
-                percent_text(spread.spread),
-                percent_text(spread.spread_std),
-                "-" if spread.error is None else percent_text(spread.error),
-                percent_text(spread.hierarchical_error),
-                f"{low} to {high}",
-            )
-        )
+    rows = [(name, *_spread_cells(spread)) for name, spread in one.parameters.items()]
     headers = ("", "mean", "±", "unit", "spread %", "± %", "own error %", "with the others %", "95 % limits")
     return Table(
-        f"{one.name}: {one.estimates.count} vehicles",
+        f"{one.name}: {count_text(one.estimates.count, 'vehicle')}",
         headers,
         tuple(rows),
         frozenset(headers[1:3] + headers[4:]),
         ("95 % limits", "± %", "±", "unit"),
+    )
+
+
+def _spread_cells(spread: ParameterSpread) -> tuple[str, ...]:
+    mean, mean_std = round_by_uncertainty(spread.mean, spread.mean_std)
+    unit = unit_text(spread.unit)
+    if spread.exact:
+        return (mean, "exact", unit, *["-"] * 5)
+    digits = len(mean.partition(".")[2])
+    low, high = (f"{limit:.{digits}f}" for limit in spread.limits)
+    return (
+        mean,
+        mean_std,
+        unit,
+        percent_text(spread.spread),
+        percent_text(spread.spread_std),
+        "-" if spread.error is None else percent_text(spread.error),
+        percent_text(spread.hierarchical_error),
+        f"{low} to {high}",
     )
 
 
@@ -125,91 +141,3 @@ def alarm_sentences(one: FleetType) -> Iterator[str]:
 def _text(deviation: Deviation) -> str:
     std = deviation.percent_std
     return f"{deviation.name} {deviation.percent:+.1f} ± {std:.1f} %"
-
-
-def monte_carlo_view(found: MonteCarlo) -> RenderableType:
-    """Return the view of a Monte Carlo study: bias, scatter, stated uncertainty and coverage of each parameter.
-
-    Parameters
-    ----------
-    found
-        From `sprung.study.monte_carlo`.
-
-    Returns
-    -------
-    RenderableType
-        For `text_of`.
-    """
-    counts = found.counts
-    text = f"{found.vehicle}: {counts.done} campaigns simulated and identified, {counts.failed} failed"
-    there = counts.done + counts.failed - found.computed
-    parts: list[RenderableType] = [
-        Text(f"{text}; {there} of them in an earlier run." if there else f"{text}.", style="bold")
-    ]
-    for verdict, one in found.verdicts.items():
-        parts.append(hanging_text("  - ", Text.assemble((verdict, COLOURS[verdict]), f": {_share(one)}")))
-    for number, message in list(found.failures.items())[:_LISTED]:
-        parts.append(hanging_text("  - ", f"campaign {number}: {message}"))
-    headers: tuple[str, ...] = (
-        "",
-        "true",
-        "unit",
-        "bias %",
-        "± %",
-        "scatter %",
-        "± % ",
-        "stated %",
-        "coverage %",
-        "95 % interval",
-        "-",
-    )
-    rows = tuple((name, *_accuracy_cells(one)) for name, one in found.parameters.items())
-    if not any(row[-1] for row in rows):
-        headers, rows = headers[:-1], tuple(row[:-1] for row in rows)
-    headers = tuple("not determined" if header == "-" else header for header in headers)
-    table = Table(
-        "Errors of the estimates, in percent of the true value",
-        headers,
-        rows,
-        frozenset(headers) - {"", "unit"},
-        ("unit", "95 % interval", "± % ", "± %"),
-    )
-    parts += [Text(), render_table(table)]
-    outside = [name for name, one in found.parameters.items() if _is_biased(one)]
-    parts.append(hanging_text("  - ", _bias_sentence(outside, len(found.parameters))))
-    return Group(*parts)
-
-
-def _accuracy_cells(one: ParameterAccuracy) -> list[str]:
-    undetermined = str(one.undetermined) if one.undetermined else ""
-    if one.bias is None or one.bias_std is None or one.scatter is None or one.scatter_std is None or one.stated is None:
-        return [f"{one.true:.6g}", unit_text(one.unit), *["-"] * 7, undetermined]
-    coverage = one.coverage
-    return [
-        f"{one.true:.6g}",
-        unit_text(one.unit),
-        f"{one.bias:+.3f}",
-        f"{one.bias_std:.3f}",
-        f"{one.scatter:.3f}",
-        f"{one.scatter_std:.3f}",
-        f"{one.stated:.3f}",
-        f"{100 * coverage.part:.1f}",
-        f"{100 * coverage.low:.1f} to {100 * coverage.high:.1f}",
-        undetermined,
-    ]
-
-
-def _share(one: Share) -> str:
-    return (
-        f"{100 * one.part:.1f} % ({one.count} of {one.of}; 95 % interval {100 * one.low:.1f} to {100 * one.high:.1f} %)"
-    )
-
-
-def _is_biased(one: ParameterAccuracy) -> bool:
-    return one.bias is not None and one.bias_std is not None and abs(one.bias) > 3 * one.bias_std
-
-
-def _bias_sentence(outside: Sequence[str], count: int) -> str:
-    if not outside:
-        return f"no bias of the {count} parameters exceeds three of its standard errors"
-    return f"the bias exceeds three of its standard errors: {', '.join(outside)}"
