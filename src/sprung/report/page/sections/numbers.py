@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 from markupsafe import Markup
@@ -24,13 +24,22 @@ from sprung.results import (
 from sprung.tables import Table, unit_text, value_cells
 from sprung.uncertainty import Estimate, round_by_uncertainty
 from sprung.units import quantity_name
-from sprung.vehicle import Layout, Sensor, layout_of
+from sprung.vehicle import Layout, Sensor, VehicleModel, layout_of
 
 _CLOSE = 0.9
 """Correlation above which a pair of parameters is listed."""
 
 _STRENGTHS = (0.3, 0.5, 0.7, 0.9)
 """Correlations at which the shade of a cell gets darker."""
+
+
+_SUBSYSTEM: Mapping[VehicleModel, str] = {
+    "full": "of the quarter car of each axle: half of the sprung mass on the axle",
+    "pitch-plane": "of each axle alone: the sprung mass on the axle",
+    "roll-plane": "of the quarter car of one side: half of the sprung mass",
+    "quarter": "of the quarter car: its sprung mass",
+}
+"""The uncoupled subsystem that frequencies and damping ratios of ride and wheel hop belong to, and its sprung mass."""
 
 
 def symbol(name: str) -> Markup:
@@ -42,7 +51,8 @@ def symbol(name: str) -> Markup:
 def characteristics(result: Result) -> Context | None:
     """Return masses, loads, centre of gravity, ride and wheel hop."""
     tables = characteristics_tables(result.name, result.derived)
-    return {"tables": tables} if tables else None
+    subsystem = _SUBSYSTEM[layout_of(result.parameters).model]
+    return {"tables": tables, "subsystem": subsystem} if tables else None
 
 
 def parameters(result: Result) -> Context:
