@@ -5,14 +5,19 @@ from __future__ import annotations
 import re
 from functools import cache
 
+import matplotlib as mpl
+import matplotlib.pyplot as plt
+import numpy as np
 import pytest
 
 import sprung
 from quarter_car import QUARTER
-from sprung.report import report_html
+from sprung.report import report_html, solid_frame, wire_frame
 from sprung.report.page.summary import model_text
 from sprung.results import Result
 from sprung.vehicle import LAYOUTS, TABLE_1_CAR, Vehicle, VehicleModel
+
+mpl.use("Agg")
 
 PARTS: dict[VehicleModel, Vehicle] = {
     "full": TABLE_1_CAR,
@@ -82,3 +87,38 @@ def test_ride_and_wheel_hop_are_said_to_be_of_the_mass_that_was_computed_with(
     assert ride.value is not None
     assert ride.std is not None
     assert abs(ride.value - expected) < 4 * ride.std
+
+
+def test_wire_frames_have_the_wheels_and_motions_of_the_vehicle(result: Result) -> None:
+    layout, frame = result.vehicle.layout, solid_frame(result)
+    hubs = list(frame.nodes.hubs)
+    assert len(hubs) == len(layout.wheels)
+    # Wheels lie apart exactly where the vehicle tells them apart, and each rises with its own coordinate alone.
+    assert (np.ptp(frame.places[hubs, 0]) > 0) == layout.pitches
+    assert (np.ptp(frame.places[hubs, 1]) > 0) == layout.rolls
+    np.testing.assert_array_equal(frame.rows[hubs, layout.wheels_at], np.eye(len(hubs)))
+    np.testing.assert_array_equal(frame.rows[hubs, : len(layout.body)], 0)
+    # The body turns as a rigid one: every point of it rises by what its place says.
+    body = range(hubs[0])
+    turned = {"z_s": 1.0, "theta": -frame.places[body, 0], "phi": frame.places[body, 1]}
+    for column, coordinate in enumerate(layout.body):
+        np.testing.assert_array_equal(frame.rows[body, column], turned[coordinate])
+    assert {node for pair in frame.nodes.edges for node in pair} <= set(body)
+    assert [hub for hub, _ in frame.nodes.struts] == hubs
+    picture = wire_frame(result)
+    for node, radius in picture.circles:
+        assert radius <= picture.places[node, 0] <= picture.width - radius
+
+
+def test_pictures_of_modes_show_the_wheels_at_rest_too(result: Result) -> None:
+    hop = next(mode for mode in reversed(result.modes["empty"]) if "hop" in mode.name)
+    number = len(result.vehicle.layout.wheels)
+    page = report_html(result)
+    drawn = page[page.index(f'aria-label="{hop.name}') :]
+    drawn = drawn[: drawn.index("</svg>")]
+    assert drawn.count('<circle class="wheel"') == drawn.count('<circle class="rest"') == number
+    axes = sprung.plot.mode(result, hop.name)
+    circles = [line for line in axes.lines if len(np.asarray(line.get_xdata())) > 2]
+    assert len([line for line in circles if line.get_linestyle() == "--"]) == number
+    assert len(circles) == 2 * number
+    plt.close("all")

@@ -12,9 +12,7 @@ from sprung.modal import StabilisationDiagram, stabilisation_diagram
 from sprung.modal_survey import LoadModes
 from sprung.plot.drawing import axes_or_new, check_name, draw
 from sprung.report import (
-    BODY_EDGES,
     LIGHT,
-    STRUTS,
     LoadDecays,
     decays_by_load,
     spectra_picture,
@@ -117,17 +115,20 @@ def mode(result: Result, name: str, load: str | None = None, *, phase: float = 0
     car, axes = wire_frame(result), axes_or_new(axes)
     rise = (car.swing(shown.motion) * np.exp(1j * phase)).real
     moved = car.places - np.stack([np.zeros(len(rise)), rise], axis=1)
-    for i, j in BODY_EDGES:
+    for i, j in car.nodes.edges:
         axes.plot(*car.places[[i, j]].T, color=LIGHT["measured"], lw=0.8, ls="--")
         axes.plot(*moved[[i, j]].T, color=LIGHT["text"], lw=1.4)
-    for i, j in STRUTS:
+    for i, j in car.nodes.struts:
         axes.plot(*moved[[i, j]].T, color=LIGHT["simulated"], lw=1.6)
     around = np.linspace(0, 2 * np.pi, 60)
     for node, radius in car.circles:
-        x, y = moved[node]
-        axes.plot(x + radius * np.cos(around), y + radius * np.sin(around), color=LIGHT["residual"], lw=1.4)
+        for (x, y), look in (
+            (car.places[node], {"color": LIGHT["measured"], "lw": 0.8, "ls": "--"}),
+            (moved[node], {"color": LIGHT["residual"], "lw": 1.4}),
+        ):
+            axes.plot(x + radius * np.cos(around), y + radius * np.sin(around), **look)
     axes.set_aspect("equal")
-    axes.set(xlim=(0, car.width), ylim=(car.height, 0))
+    axes.set(xlim=(0, car.width), ylim=(car.height + 2, -2))
     axes.set_axis_off()
     frequency = "not determined" if shown.frequency_std is None else f"{shown.frequency:.4g} Hz"
     axes.set_title(f"{name}, {load}: {frequency}", fontsize=9, parse_math=False)

@@ -36,7 +36,7 @@ from sprung.report.pictures.recordings import landing_picture, recording_picture
 from sprung.report.pictures.spectra import spectra_picture
 from sprung.report.pictures.stability import stability_picture
 from sprung.report.pictures.transmissibility import transmissibility_picture
-from sprung.report.pictures.wire_frame import BODY_EDGES, HUBS, STRUTS, SolidFrame, solid_frame, wire_frame
+from sprung.report.pictures.wire_frame import SolidFrame, solid_frame, wire_frame
 from sprung.report.sketch.shapes import Disc, Drawing, Stroke, TextShape
 from sprung.report.sketch.sheet import blank_sketch, sketch_sheet
 from sprung.report.sketch.sketch import VehicleSketch, vehicle_sketch
@@ -55,14 +55,11 @@ from sprung.report.terminal.truth import truth_view
 from sprung.report.terminal.validation import validation_view
 
 __all__ = [
-    "BODY_EDGES",
     "CHECK_FILE",
     "FLEET_FILE",
-    "HUBS",
     "LIGHT",
     "REPORT_FILES",
     "RESULT_FILES",
-    "STRUTS",
     "Band",
     "Curve",
     "Disc",
