@@ -13,7 +13,9 @@ import pytest
 import sprung
 from quarter_car import QUARTER
 from sprung.report import report_html, solid_frame, wire_frame
+from sprung.report.drawing.axis import axis_limits
 from sprung.report.page.summary import model_text
+from sprung.report.terminal.validation import validation_table
 from sprung.results import Result
 from sprung.vehicle import LAYOUTS, TABLE_1_CAR, Vehicle, VehicleModel
 
@@ -122,3 +124,20 @@ def test_pictures_of_modes_show_the_wheels_at_rest_too(result: Result) -> None:
     assert len([line for line in circles if line.get_linestyle() == "--"]) == number
     assert len(circles) == 2 * number
     plt.close("all")
+
+
+def test_motions_that_the_vehicle_does_not_have_are_not_shown(result: Result) -> None:
+    body = result.vehicle.layout.body
+    motions = [name for name, one in (("vertical", "z_s"), ("pitch", "theta"), ("roll", "phi")) if one in body]
+    drop = next(iter(result.series))
+    assert [axes.get_ylabel().split(",")[0] for axes in sprung.plot.fit(result, drop)[::2]] == motions
+    plt.close("all")
+    headers = validation_table(result.name, result.validation, result.vehicle.layout).headers
+    assert [header.removesuffix(" %") for header in headers[1 : headers.index("all %")]] == motions
+    page = " ".join(report_html(result).split())
+    words = {1: "Vertical", 2: "Vertical and {}", 3: "Vertical, pitch and roll"}[len(motions)].format(motions[-1])
+    assert f"<p>{words} acceleration of the body: measured" in page
+
+
+def test_a_quantity_that_is_zero_throughout_has_limits_that_can_be_read() -> None:
+    assert axis_limits(np.zeros(5), margin=0.0) == (-1.0, 1.0)
