@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from functools import cache
 
 import matplotlib as mpl
@@ -16,7 +17,15 @@ from sprung.report import report_html, solid_frame, wire_frame
 from sprung.report.drawing.axis import axis_limits
 from sprung.report.page.summary import model_text
 from sprung.report.terminal.validation import validation_table
-from sprung.results import Result
+from sprung.results import (
+    Result,
+    characteristics_tables,
+    derived_table,
+    meaning_of,
+    parameters_table,
+)
+from sprung.ride import ride_numbers, ride_tables
+from sprung.uncertainty import Estimate
 from sprung.vehicle import LAYOUTS, TABLE_1_CAR, Vehicle, VehicleModel
 
 mpl.use("Agg")
@@ -141,3 +150,32 @@ def test_motions_that_the_vehicle_does_not_have_are_not_shown(result: Result) ->
 
 def test_a_quantity_that_is_zero_throughout_has_limits_that_can_be_read() -> None:
     assert axis_limits(np.zeros(5), margin=0.0) == (-1.0, 1.0)
+
+
+def test_the_pitch_plane_has_stations_and_both_sides() -> None:
+    """Its masses are those of both wheels of an axle, and of the whole body."""
+    pitch, full = (ride_tables(ride_numbers(PARTS[model], roads=("C",))) for model in ("pitch-plane", "full"))
+    assert {"sprung mass on a station, kg", "unsprung mass of a station, kg"} <= {row[0] for row in pitch[0].rows}
+    assert {"sprung mass on a wheel, kg", "unsprung mass of a wheel, kg"} <= {row[0] for row in full[0].rows}
+    assert (pitch[-1].title, pitch[-1].headers) == ("Pitch plane", ("both sides together", "pitch plane"))
+    assert (full[-1].title, full[-1].headers[0]) == ("Half cars", "half car")
+    mass, half = (float(table.rows[0][1]) for table in (pitch[-1], full[-1]))
+    assert mass == 2 * half
+    rows = parameters_table("", identified("pitch-plane").parameters).rows
+    meanings = {row[0]: row[-1] for row in rows}
+    assert meanings["m_uf"] == "unsprung mass, front station"
+    assert "each" not in " ".join(meanings.values())
+    assert (
+        meaning_of("front_wheel_load", LAYOUTS["pitch-plane"])
+        == "static load of the front station of the empty vehicle"
+    )
+
+
+def test_exact_derived_values_are_rounded() -> None:
+    exact = Estimate(3780.463575, 0.0, (3780.463575, 3780.463575), "N", "known")
+    [row] = derived_table("", {"wheel_load": exact}).rows
+    assert row == ("wheel_load", "3780.46", "", "N")
+    stated = replace(exact, value=1551.8, unit="kg")
+    assert derived_table("", {"total_mass": stated}).rows[0][1] == "1551.8"
+    [table] = characteristics_tables("", {"wheel_load": exact})
+    assert table.rows[0][1] == "3780.46"

@@ -59,7 +59,8 @@ def parameters(result: Result) -> Context:
     """Return every parameter with its interval; none of a rejected result."""
     estimates = {} if result.verdict.state == "reject" else {**result.parameters, **other_quantities(result.derived)}
     half = half_width(estimates)
-    rows = [_parameter(name, estimate, half) for name, estimate in estimates.items()]
+    layout = layout_of(result.parameters)
+    rows = [_parameter(name, estimate, half, layout) for name, estimate in estimates.items()]
     profiled = [name for name, estimate in estimates.items() if estimate.interval_from == "profile"]
     scale_free = not result.scale.known and bool(result.scale.per_total_mass)
     return {
@@ -92,12 +93,12 @@ def curves(result: Result) -> Context | None:
     return {"text": text, "pictures": pictures, "tables": tables, "notes": notes} if pictures else None
 
 
-def _parameter(name: str, estimate: Estimate, half: float) -> Context:
+def _parameter(name: str, estimate: Estimate, half: float, layout: Layout) -> Context:
     value, std, percent, unit, status = value_cells(estimate)
     row: Context = {
         "name": name,
         "symbol": symbol(name),
-        "meaning": meaning_of(name),
+        "meaning": meaning_of(name, layout),
         "value": value,
         "std": std,
         "percent": percent,
