@@ -39,10 +39,13 @@ def fit(
     Raises
     ------
     InputError
-        If there is no such drop or channel.
+        If there is no such drop or channel, or the list of channels is empty.
     """
     series = result.series[check_name(drop, list(result.series), "drop")]
     if channels is not None:
+        if not channels:
+            do = f"Name some of {', '.join(series.channels)}; None draws the motion of the body."
+            raise InputError([Problem("channels", "none", "at least one channel", do)])
         names = [check_name(name, series.channels, "channel") for name in channels]
         return draw(channels_picture(drop, series, names, result.setup.units), axes)
     return draw(motion_picture(drop, series, result.validation[drop], layout_of(result.parameters)), axes)

@@ -104,11 +104,13 @@ def mode(result: Result, name: str, load: str | None = None, *, phase: float = 0
     Raises
     ------
     InputError
-        If there is no such mode or load, or the result was rejected.
+        If there is no such mode or load, the phase is not finite, or the result was rejected.
     """
     if result.verdict.state == "reject":
         do = "Read result.verdict.reasons; sprung.modes finds modes without a vehicle model."
         raise InputError([Problem(f"mode {name}", "a rejected result, which has no modes", "accept or doubtful", do)])
+    if not np.isfinite(phase):
+        raise InputError([Problem("phase", f"{phase:g}", "a finite angle in rad", "Give a number, such as 0.")])
     load = check_name(load or next(iter(result.modes)), list(result.modes), "load")
     modes = {mode.name: mode for mode in result.modes[load]}
     shown = modes[check_name(name, list(modes), "mode")]

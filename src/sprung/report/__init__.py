@@ -1,5 +1,6 @@
 """Everything people look at; reads every result, and nothing below reads it."""
 
+from sprung.report.drawing.legend import LETTER, stack_labels
 from sprung.report.drawing.palette import LIGHT
 from sprung.report.drawing.picture import Band, Curve, Mark, Panel, Picture, Points, Rule
 from sprung.report.drawing.svg import picture_frame, picture_svg
@@ -57,6 +58,7 @@ from sprung.report.terminal.validation import validation_view
 __all__ = [
     "CHECK_FILE",
     "FLEET_FILE",
+    "LETTER",
     "LIGHT",
     "REPORT_FILES",
     "RESULT_FILES",
@@ -117,6 +119,7 @@ __all__ = [
     "solid_frame",
     "spectra_picture",
     "stability_picture",
+    "stack_labels",
     "text_of",
     "transmissibility_picture",
     "truth_view",
