@@ -96,10 +96,14 @@ def test_spectra_have_their_peaks_at_the_modes(result: Result) -> None:
 def test_labels_of_lines_leave_the_panels_their_height(result: Result) -> None:
     """Stacked above the panel, none over another one or beyond the figure."""
     body, wheels = plot.spectra(result)
-    figure = body.figure
+    figure = body.get_figure(root=True)
+    assert figure is not None
     figure.draw_without_rendering()
     labels = [text.get_window_extent() for text in body.texts if text.get_text() and "sensors" not in text.get_text()]
-    assert len(labels) == len({line.get_xdata()[0] for line in body.lines if line.get_linestyle() == "--"}) - 3
+    assert (
+        len(labels)
+        == len({float(np.asarray(line.get_xdata())[0]) for line in body.lines if line.get_linestyle() == "--"}) - 3
+    )
     for i, one in enumerate(labels):
         assert figure.bbox.x0 <= one.x0 < one.x1 <= figure.bbox.x1
         assert body.bbox.y1 <= one.y0 < one.y1 <= figure.bbox.y1

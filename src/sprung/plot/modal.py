@@ -124,11 +124,9 @@ def mode(result: Result, name: str, load: str | None = None, *, phase: float = 0
         axes.plot(*moved[[i, j]].T, color=LIGHT["simulated"], lw=1.6)
     around = np.linspace(0, 2 * np.pi, 60)
     for node, radius in car.circles:
-        for (x, y), look in (
-            (car.places[node], {"color": LIGHT["measured"], "lw": 0.8, "ls": "--"}),
-            (moved[node], {"color": LIGHT["residual"], "lw": 1.4}),
-        ):
-            axes.plot(x + radius * np.cos(around), y + radius * np.sin(around), **look)
+        circle = radius * np.stack([np.cos(around), np.sin(around)])
+        axes.plot(*(car.places[node][:, None] + circle), color=LIGHT["measured"], lw=0.8, ls="--")
+        axes.plot(*(moved[node][:, None] + circle), color=LIGHT["residual"], lw=1.4)
     axes.set_aspect("equal")
     axes.set(xlim=(0, car.width), ylim=(car.height + 2, -2))
     axes.set_axis_off()

@@ -193,15 +193,15 @@ def _body_ends(
 ) -> Iterator[tuple[tuple[float, ...], tuple[float, ...]]]:
     """Yield the ends of the deck along and across the vehicle, m, and those of the roof: one where the body has no extent."""
     length, inner = a + b, half * (1 - _INSET)
+    deck: tuple[float, ...] = (_BLOCK * length, -_BLOCK * length)
+    roof = deck
     if layout.pitches:
-        front, rear = a + _OVERHANG * length, -b - _OVERHANG * length
-        along = (front, rear), (0.5 * front, 0.94 * rear)
+        deck = front, rear = a + _OVERHANG * length, -b - _OVERHANG * length
+        roof = 0.5 * front, 0.94 * rear
     elif layout.rolls:
-        along = (0.0,), (0.0,)
-    else:
-        along = (_BLOCK * length, -_BLOCK * length), (_BLOCK * length, -_BLOCK * length)
-    across = ((half, -half), (inner, -inner)) if layout.rolls else ((0.0,), (0.0,))
-    yield from zip(along, across, strict=True)
+        deck = roof = (0.0,)
+    yield deck, (half, -half) if layout.rolls else (0.0,)
+    yield roof, (inner, -inner) if layout.rolls else (0.0,)
 
 
 def _nodes(corners: Sequence[tuple[float, ...]], stations: int, engines: int) -> Nodes:

@@ -96,10 +96,10 @@ def _reasons(plan: Plan) -> Iterator[str]:
     together: dict[tuple[str, tuple[str, ...]], list[str]] = {}
     for (name, text), labels in rows.items():
         together.setdefault((text, tuple(labels)), []).append(name)
-    for (text, labels), names in together.items():
-        others = f" and {len(labels) - _NAMED} more" if len(labels) > _NAMED else ""
+    for (text, tests), names in together.items():
+        others = f" and {len(tests) - _NAMED} more" if len(tests) > _NAMED else ""
         subject = f"{', '.join(names)}: each " if len(names) > 1 else f"{names[0]} ".lstrip()
-        yield f"{', '.join(labels[:_NAMED])}{others}: {subject}{text}"
+        yield f"{', '.join(tests[:_NAMED])}{others}: {subject}{text}"
 
 
 def _reasons_of(row: PlanRow) -> Iterator[tuple[str, str]]:
