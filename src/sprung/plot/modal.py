@@ -128,7 +128,7 @@ def mode(result: Result, name: str, load: str | None = None, *, phase: float = 0
         axes.plot(*(car.places[node][:, None] + circle), color=LIGHT["measured"], lw=0.8, ls="--")
         axes.plot(*(moved[node][:, None] + circle), color=LIGHT["residual"], lw=1.4)
     axes.set_aspect("equal")
-    axes.set(xlim=(0, car.width), ylim=(car.height + 2, -2))
+    axes.set(xlim=(0, car.width), ylim=(car.height, 0))
     axes.set_axis_off()
     frequency = "not determined" if shown.frequency_std is None else f"{shown.frequency:.4g} Hz"
     axes.set_title(f"{name}, {load}: {frequency}", fontsize=9, parse_math=False)

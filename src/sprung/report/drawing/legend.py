@@ -70,7 +70,7 @@ def label_levels(labels: list[Rule], axis: Axis, width: float) -> list[int]:
 
 
 def stack_labels(labels: list[Rule], axis: Axis, width: float) -> Iterator[tuple[Rule, float, int]]:
-    """Yield every label with its middle along the axis, 0 to 1, and its line above the panels, such that none overlap.
+    """Yield every label with its place above the panels, such that none overlap.
 
     Parameters
     ----------
@@ -80,6 +80,15 @@ def stack_labels(labels: list[Rule], axis: Axis, width: float) -> Iterator[tuple
         The horizontal axis.
     width
         Of the panels, units of `LETTER`.
+
+    Yields
+    ------
+    mark : Rule
+        The line with its label.
+    middle : float
+        Of the label along the axis, dimensionless, 0 to 1.
+    level : int
+        Its line above the panels, 0 for the lowest.
     """
     for mark, level in zip(labels, label_levels(labels, axis, width), strict=True):
         place = float(axis.at(np.array(mark.at)))

@@ -39,6 +39,9 @@ _BLOCK = 0.25
 _LEAST_WIDTH = 1.3
 """Least width of a picture in wheelbases: a part of a vehicle is drawn no larger than a whole one."""
 
+_LINE = 2.0
+"""Room for the width of lines above and below the largest displacement, units."""
+
 Edges = tuple[tuple[int, int], ...]
 """Pairs of nodes."""
 
@@ -180,9 +183,9 @@ def solid_frame(result: Result) -> SolidFrame:
     nodes = _nodes(corners, len(stations), len(engine))
     rows = np.zeros((len(flat), len(layout.coordinates) + 1))
     rise = {"z_s": np.ones(len(flat)), "theta": -flat[:, 0], "phi": flat[:, 1]}
-    carried = nodes.hubs[0]
+    first_hub = nodes.hubs[0]
     for column, coordinate in enumerate(layout.body):
-        rows[:carried, column] = rise[coordinate][:carried]
+        rows[:first_hub, column] = rise[coordinate][:first_hub]
     rows[nodes.hubs, range(layout.wheels_at.start, layout.wheels_at.stop)] = 1
     rows[nodes.engine, -1] = 1
     return SolidFrame(nodes, np.column_stack([flat, length * heights]), rows, _HUB * length, length)
@@ -238,10 +241,10 @@ def wire_frame(result: Result, width: float = 220.0) -> WireFrame:
     hubs, radius = list(solid.nodes.hubs), solid.wheel
     left, right = min(across.min(), across[hubs].min() - radius), max(across.max(), across[hubs].max() + radius)
     scale = (width - 12) / max(right - left, _LEAST_WIDTH * length)
-    swing = _SWING * length
+    swing = _SWING * length + _LINE / scale
     top, bottom = up.max() + swing, up[hubs].min() - radius - swing
     places = np.stack([width / 2 + scale * (across - (left + right) / 2), scale * (top - up)], axis=1)
-    view = "front →" if layout.pitches else "from behind" if layout.rolls else ""
+    view = "front →" if layout.pitches else "rear view" if layout.rolls else ""
     return WireFrame(
         nodes=solid.nodes,
         places=places,
