@@ -18,6 +18,7 @@ import pytest
 import sprung
 from browser_page import Tabs, chromium, tabs
 from served import Served, served
+from sprung.errors import InputError
 from sprung.report import add_report, save_result
 from sprung.vehicle import TABLE_1_CAR
 
@@ -411,6 +412,43 @@ def test_an_option_is_never_taken_from_a_form_as_it_is(server: Served) -> None:
     answer = server.ask("/export?results=before/results", "POST", body, headers)
     assert answer.status == 400
     assert "--force" in answer.text
+
+
+@pytest.mark.parametrize("state", ["reject", "doubtful"])
+def test_an_export_that_can_only_fail_is_not_offered(server: Served, state: str) -> None:
+    """Neither of a rejected result nor of one whose parameters are not determined; tables can be written of both."""
+    stored = {"reject": "reject.json", "doubtful": "unidentifiable.json"}[state]
+    folder = server.folder / f"{state} result"
+    folder.mkdir()
+    shutil.copy(Path(__file__).parents[1] / "report" / stored, folder / "results.json")
+    page = server.ask(f"/export?results={state}%20result", headers={"Accept": "text/html"}).text
+    shutil.rmtree(folder)
+    offered = dict(re.findall(r'name="to" value="([\w-]+)".*?<button type="submit"( disabled)?>', page, re.DOTALL))
+    assert {name for name, disabled in offered.items() if not disabled} == {"markdown", "latex"}
+    assert len(offered) == 8
+    note = {"reject": "The result is rejected: only the tables", "doubtful": "are not determined: only the tables"}[
+        state
+    ]
+    assert note in page
+    whole = server.ask(PAGES[4], headers={"Accept": "text/html"}).text
+    assert "disabled" not in whole
+
+
+def test_speeds_have_the_limits_of_the_command_and_may_be_several(server: Served) -> None:
+    headers = {"Content-Type": "application/x-www-form-urlencoded", "Accept": "text/html"}
+    answer = server.ask(PAGES[5], "POST", b"speed=50+541", headers)
+    assert answer.status == 400
+    assert "speeds from 1.8 to 540 km/h" in answer.text
+    assert "Write numbers with blanks between them" in answer.text
+    with pytest.raises(InputError, match=r"1\.8 to 540 km/h"):
+        sprung.ride.ride_numbers(TABLE_1_CAR, speeds=(541 / 3.6,))
+
+
+def test_an_address_without_a_campaign_is_refused_in_a_whole_sentence(server: Served) -> None:
+    for path in ("/campaign?campaign=", "/validate?campaign=", "/plan"):
+        answer = server.ask(path, headers={"Accept": "text/html"})
+        assert answer.status == 400
+        assert "The address names no campaign." in answer.text
 
 
 def chunks_of(path: Path) -> Iterator[tuple[bytes, bytes]]:

@@ -175,6 +175,12 @@ def test_a_name_that_is_too_long_as_a_whole_is_refused_shortly(tmp_path: Path) -
     assert len(str(refused.value)) < 400
 
 
+def test_a_name_that_is_too_long_is_said_to_be(tmp_path: Path) -> None:
+    with pytest.raises(OutsideError, match="is too long: a name has at most 255 bytes"):
+        Workspace(tmp_path).new_path("x" * 252 + ".csv")
+    assert Workspace(tmp_path).new_path("x" * 251 + ".csv").name == "x" * 251 + ".csv"
+
+
 def test_a_hidden_upload_is_refused_with_a_remedy(tmp_path: Path) -> None:
     for name in (".hidden.csv", "a/.b"):
         with pytest.raises(OutsideError, match="Rename the file first"):

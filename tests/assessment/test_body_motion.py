@@ -8,6 +8,7 @@ import pytest
 from sprung.assessment import BodyMotion, DropValidation
 from sprung.report import motion_picture
 from sprung.results import Series
+from sprung.vehicle import FULL
 
 RATE, SECONDS, NOISE = 500.0, 3.2, 0.02
 TIME = np.arange(int(RATE * SECONDS)) / RATE
@@ -73,5 +74,5 @@ def test_the_picture_says_which_of_both(over_noise: dict[str, float | None], sai
     one = values[:1].astype(np.float64)
     series = Series(("a",), TIME, one, one, values, values)
     drop = DropValidation(0.01, 0.02, None, 0.01, 1.0, None, None, 0.0, None, over_noise=over_noise)
-    picture = motion_picture("drop", series, drop)
+    picture = motion_picture("drop", series, drop, FULL)
     assert [panel.note for panel in picture.panels][::2] == ["error 1.0 %", "error 2.0 %", said]

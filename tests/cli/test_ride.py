@@ -43,6 +43,7 @@ def test_of_a_rejected_result_there_is_nothing() -> None:
     said = run("ride", RESULTS / "reject.json")
     assert (said.status, said.out) == (3, "")
     assert "rejected" in said.err
+    assert "\n  - the model does not explain the records" in said.err
     document = run("ride", RESULTS / "reject.json", "--json")
     assert document.status == 3
     assert document.json["verdict"]["state"] == "reject"

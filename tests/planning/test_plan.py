@@ -12,6 +12,7 @@ from hypothesis import given, settings
 import sprung
 from sprung.errors import InputError
 from sprung.planning import CramerRaoBound, Plan, PlanRow
+from sprung.report import plan_view, text_of
 from sprung.uncertainty import KnownValue
 from sprung.vehicle import TABLE_1_CAR, Vehicle
 from strategies import vehicles
@@ -272,3 +273,12 @@ def test_the_document_has_everything() -> None:
     assert (first["name"], first["cost"], first["above"], first["percent"]["m_s"]) == ("as planned", None, 11, None)
     assert set(first["unidentifiable"][0]["parameters"]) == SCALED
     assert (second["name"], second["cost"], second["above"]) == ("total mass", "total mass", 0)
+
+
+def test_parameters_that_are_missing_for_one_reason_are_named_together() -> None:
+    """Roll is excited by no drop of both wheels of an axle."""
+    drops = [{"wheels": wheels} for wheels in (("fl", "fr", "rl", "rr"), ("fl", "fr"))]
+    plan = sprung.plan(TABLE_1_CAR, drops=drops, known=MASS)
+    text = " ".join(text_of(plan_view(plan)).split())
+    assert text.count("alone hardly changes these recordings") == 1
+    assert "I_xx, t_f, t_r: each alone hardly changes these recordings" in text

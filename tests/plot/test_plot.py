@@ -93,6 +93,24 @@ def test_spectra_have_their_peaks_at_the_modes(result: Result) -> None:
     assert 9.5 < peak < 11.5
 
 
+def test_labels_of_lines_leave_the_panels_their_height(result: Result) -> None:
+    """Stacked above the panel, none over another one or beyond the figure."""
+    body, wheels = plot.spectra(result)
+    figure = body.get_figure(root=True)
+    assert figure is not None
+    figure.draw_without_rendering()
+    labels = [text.get_window_extent() for text in body.texts if text.get_text() and "sensors" not in text.get_text()]
+    assert (
+        len(labels)
+        == len({float(np.asarray(line.get_xdata())[0]) for line in body.lines if line.get_linestyle() == "--"}) - 3
+    )
+    for i, one in enumerate(labels):
+        assert figure.bbox.x0 <= one.x0 < one.x1 <= figure.bbox.x1
+        assert body.bbox.y1 <= one.y0 < one.y1 <= figure.bbox.y1
+        assert not any(one.overlaps(other) for other in labels[:i])
+    assert body.bbox.height + wheels.bbox.height > 0.6 * figure.bbox.height
+
+
 def test_stabilisation_of_modes_of_a_load_of_a_diagram_and_of_a_result(campaign: Campaign, result: Result) -> None:
     modes = sprung.modes(campaign, diagram=True)
     diagram = modes["empty"].diagram
@@ -125,6 +143,7 @@ def test_parameters_and_correlation(result: Result) -> None:
     own = plt.subplots()[1]
     assert plot.correlation(result, axes=own) is own
     np.testing.assert_array_equal(np.asarray(own.images[0].get_array()), result.correlation.matrix)
+    assert own.get_title(loc="left") == "Correlation of the estimated parameters"
 
 
 def test_amplitude(result: Result) -> None:
@@ -133,6 +152,11 @@ def test_amplitude(result: Result) -> None:
     assert frequency.get_xlim()[0] > frequency.get_xlim()[1]  # it dies to the right
     with pytest.raises(InputError, match="amplitude=True"):
         plot.amplitude(replace(result, amplitude=()))
+    quarter = {name: one for name, one in result.parameters.items() if name == "m_s"} | {
+        "m_u": result.parameters["m_uf"]
+    }
+    with pytest.raises(InputError, match="which a part of a vehicle does not have together"):
+        plot.amplitude(replace(result, parameters=quarter, amplitude=()))
     with pytest.raises(InputError, match="Did you mean 'body bounce'"):
         plot.amplitude(result, "body bounse")
 
@@ -168,6 +192,11 @@ def test_what_is_not_there_is_named(result: Result) -> None:
         plot.fit(result, "empty_bonce")
     with pytest.raises(InputError, match="6 axes, one for each panel"):
         plot.fit(result, "empty_bounce", axes=[plt.subplots()[1]])
+    with pytest.raises(InputError, match="at least one channel"):
+        plot.fit(result, "empty_bounce", [])
+    for phase in (np.nan, np.inf):
+        with pytest.raises(InputError, match="a finite angle in rad"):
+            plot.mode(result, "body bounce", phase=phase)
     rejected = replace(result, verdict=Verdict("reject", ()))
     with pytest.raises(InputError, match="rejected"):
         plot.mode(rejected, "body bounce")

@@ -10,9 +10,11 @@ import pytest
 
 import sprung
 from goldens import stored_result
+from layouts import tables_of
 from sprung.assessment import Verdict
 from sprung.errors import InputError
 from sprung.report import report_html, result_view, text_of
+from sprung.report.terminal.result import residual_table
 from sprung.results import PriorComparison, Result
 from sprung.results.withholding import withhold_estimates
 from sprung.tables import value_cells
@@ -113,3 +115,18 @@ def test_what_was_known_is_not_compared_with_a_model_that_does_not_hold(sound: R
     page = report_html(refused)
     assert "standard uncertainties</td>" not in page
     assert fixed not in page
+
+
+def test_where_nothing_is_modelled_no_error_of_it_is_given(rejected: Result) -> None:
+    """Noise has no signal: the residual is all that was recorded, and the model error is not zero."""
+    noise = dict.fromkeys(rejected.fit.misfit, 0.0)
+    fit = dataclasses.replace(rejected.fit, misfit=noise)
+    drops = {name: dataclasses.replace(one, fitted=0.999) for name, one in rejected.validation.items()}
+    cells = {
+        part: {row[1] for row in next(tables_of(residual_table(shown))).rows}
+        for part, shown in (
+            ("noise", dataclasses.replace(rejected, fit=fit, validation=drops)),
+            ("modelled", dataclasses.replace(rejected, fit=fit)),
+        )
+    }
+    assert cells == {"noise": {"-"}, "modelled": {"0.0"}}

@@ -10,6 +10,7 @@ import pytest
 
 import sprung
 from sprung.report import Curve, Points, damper_cloud_pictures, differences_picture, picture_svg
+from sprung.report.drawing.svg import layout_of
 from sprung.results import Result, damper_points
 from sprung.uncertainty import NORMAL_95
 from sprung.vehicle import TABLE_1_CAR
@@ -78,3 +79,11 @@ def test_dampers_have_the_curve_in_front_of_the_points(results: tuple[Result, Re
     assert left.y == pytest.approx(cloud.y - rate.value * cloud.x, abs=1e-6)
     assert len(cloud.x) <= 4000
     assert "style=" not in picture_svg(front)  # the page's Content-Security-Policy refuses it
+
+
+def test_labels_beside_panels_of_dampers_stay_beside_them(results: tuple[Result, Result]) -> None:
+    """Written upwards in 10.5 pixels, a letter is 5 units wide at least."""
+    result = results[0]
+    for picture in damper_cloud_pictures(result, damper_points(result, "empty_bounce")):
+        for panel, box in zip(picture.panels, layout_of(picture).boxes, strict=True):
+            assert all(5 * len(line) <= box.height for line in panel.y.label.split(", ", 1))

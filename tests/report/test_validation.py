@@ -12,7 +12,7 @@ import sprung
 from layouts import check_view_is_whole
 from sprung.report import Curve, amplitude_pictures, draw_validation, motion_picture, text_of, validation_view
 from sprung.study import Validation
-from sprung.vehicle import TABLE_1_CAR
+from sprung.vehicle import FULL, TABLE_1_CAR
 
 
 @pytest.fixture(scope="module")
@@ -42,7 +42,7 @@ def test_drawings_are_svg_and_the_same_again(found: Validation) -> None:
 
 def test_a_drop_is_drawn_as_it_was(found: Validation) -> None:
     motion, result = found.motions[1], found.result
-    picture = motion_picture(motion.name, result.series[motion.name], result.validation[motion.name])
+    picture = motion_picture(motion.name, result.series[motion.name], result.validation[motion.name], FULL)
     assert picture is not None
     assert len(picture.panels) == 6
     for i in range(3):

@@ -223,3 +223,11 @@ def test_results_of_earlier_versions_lack_a_correlation() -> None:
     assert earlier.per_total_mass == result.scale.per_total_mass
     with pytest.raises(InputError, match="Identify the campaign again"):
         ride_numbers(replace(result, scale=earlier))
+
+
+def test_notes_give_speeds_as_the_options_do() -> None:
+    rubbing = TABLE_1_CAR.with_values(F_f=60.0, F_r=60.0, s_f=1.5e5, s_r=1.5e5)
+    found = ride_numbers(rubbing, roads=("E",), speeds=(100 / 3.6,))
+    notes = [note for note in found.notes if "road E" in note]
+    assert len(notes) == 2
+    assert all("E at 100 km/h" in note for note in notes)

@@ -10,10 +10,7 @@ from numpy.typing import NDArray
 from sprung.app.result_view import load_result
 from sprung.errors import InputError
 from sprung.report import (
-    BODY_EDGES,
-    HUBS,
     LIGHT,
-    STRUTS,
     SolidFrame,
     damper_cloud_pictures,
     mode_caption,
@@ -60,9 +57,9 @@ def scene(folder: str) -> dict[str, Any]:
     return {
         "places": np.round(frame.places, 4).tolist(),
         "rows": np.round(frame.rows, 5).tolist(),
-        "edges": BODY_EDGES,
-        "struts": STRUTS,
-        "hubs": [*HUBS],
+        "edges": frame.nodes.edges,
+        "struts": frame.nodes.struts,
+        "hubs": frame.nodes.hubs,
         "wheel": round(frame.wheel, 4),
         "wheelbase": round(frame.wheelbase, 4),
         "colours": {name: LIGHT[name] for name in _COLOURS},

@@ -49,7 +49,7 @@ def _stamp(path: Path) -> int:
 
 
 def summary(folder: str) -> dict[str, Any]:
-    """Return name, verdict, next step, loads and parameters of a result.
+    """Return name, verdict, next step, undetermined parameters, loads and parameters of a result.
 
     Parameters
     ----------
@@ -73,6 +73,7 @@ def summary(folder: str) -> dict[str, Any]:
         "statement": text.statement,
         "explanation": text.explanation,
         "next_step": result.next_step,
+        "undetermined": [name for name, one in result.parameters.items() if one.value is None],
         "loads": [load.name for load in result.setup.loads if load.name != "empty"],
         "parameters": "" if rejected else parameters_table(result.name, estimates).html(),
     }

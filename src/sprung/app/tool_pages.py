@@ -120,6 +120,8 @@ def campaign_name(request: Request) -> str:
         400 if it is missing, or not that of a campaign file.
     """
     name = required(request, "campaign")
+    if not name:
+        raise HTTPException(400, "The address names no campaign. Open it from the page of the folder.")
     if not name.endswith(".toml"):
         raise HTTPException(400, f"{name} is no campaign file, whose name ends in .toml.")
     return name
@@ -149,13 +151,16 @@ def read_number(text: str, where: str, low: float, high: float, what: str) -> fl
     >>> read_number("72,5", "Speed", 1, 400, "a speed from 1 to 400 km/h")
     72.5
     """
-    text = text.strip()
+    return _checked_number(text.strip(), where, low, high, what, "Write one number, such as 1.5 or 1,5.")
+
+
+def _checked_number(text: str, where: str, low: float, high: float, what: str, do: str) -> float | None:
     if not text:
         return None
     literal = number_literal(text)
     number = float("nan" if literal is None else literal)
     if not low <= number <= high:
-        raise InputError([Problem(where, f"'{text}'", what, "Write one number, such as 1.5 or 1,5.")])
+        raise InputError([Problem(where, f"'{text}'", what, do)])
     return number
 
 
@@ -175,7 +180,9 @@ def read_numbers(text: str, where: str, low: float, high: float, what: str) -> t
     problems, found = Problems(), []
     for part in text.replace(";", " ").split():
         with problems.collect():
-            number = read_number(part, where, low, high, what)
+            number = _checked_number(
+                part, where, low, high, what, "Write numbers with blanks between them, such as 50 72,5."
+            )
             if number is not None:
                 found.append(number)
     if problems:

@@ -129,6 +129,8 @@ class Workspace:
         """
         parts = name.split("/") if name else []
         shown = repr(name if len(name) <= _SHOWN else f"{name[:_SHOWN]}...")
+        if any(len(part.encode(errors="surrogatepass")) > _LONGEST for part in parts):
+            raise OutsideError(f"{shown} is too long: a name has at most {_LONGEST} bytes. Choose a shorter one.")
         if any(not _is_plain(part) for part in parts):
             raise OutsideError(f"{shown} is not the name of a file in {self.folder.name}. Choose a file from the page.")
         try:

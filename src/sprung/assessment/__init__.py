@@ -1,7 +1,7 @@
 """Assessment of a fit: residuals against noise, cross-validation of left-out drops, and the verdict."""
 
 from sprung.assessment.amplitude import ModeAmplitude, follow_modes
-from sprung.assessment.body_motion import MOTIONS, BodyMotion, body_motions
+from sprung.assessment.body_motion import MOTIONS, BodyMotion, body_motions, motions_of
 from sprung.assessment.cross_validation import DropValidation, cross_validate_drops
 from sprung.assessment.mode_tracking import AmplitudeCurve
 from sprung.assessment.model_error import estimate_model_error
@@ -24,4 +24,5 @@ __all__ = [
     "estimate_model_error",
     "estimate_noise_level",
     "follow_modes",
+    "motions_of",
 ]

@@ -13,12 +13,35 @@ from sprung.assessment.residuals import estimate_noise_level
 from sprung.display import shown
 from sprung.estimation import FitResult, FitStatistics
 from sprung.preprocess import FreeDecay
-from sprung.vehicle import FULL, Readout, Sensor, layout_of, wheelbase_of
+from sprung.vehicle import FULL, Layout, Readout, Sensor, layout_of, wheelbase_of
 
 Real = NDArray[np.float64]
 
 MOTIONS = ("vertical", "pitch", "roll")
 """Motions of the body: figures 7, 8 and 9 of the paper."""
+
+
+def motions_of(layout: Layout) -> tuple[str, ...]:
+    """Return the motions that the body of a vehicle, or of a part of one, has.
+
+    Parameters
+    ----------
+    layout
+        Of the vehicle.
+
+    Returns
+    -------
+    tuple of str
+        Some of `MOTIONS`.
+
+    Examples
+    --------
+    >>> from sprung.vehicle import LAYOUTS
+    >>> motions_of(LAYOUTS["roll-plane"])
+    ('vertical', 'roll')
+    """
+    return tuple(motion for motion, one in zip(MOTIONS, FULL.body, strict=True) if one in layout.body)
+
 
 _SEEN = 1e-6
 """Part of a motion that the sensors may leave undetermined."""

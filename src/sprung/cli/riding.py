@@ -60,7 +60,8 @@ def ride(
             if as_json:
                 verdict = {"state": "reject", "reasons": list(result.verdict.reasons)}
                 say_json({"vehicle": result.name, "verdict": verdict})
-            complain(f"The result of {result.name} is rejected: there are no ride numbers.")
+            reasons = "".join(f"\n  - {reason}" for reason in result.verdict.reasons)
+            complain(f"The result of {result.name} is rejected: there are no ride numbers.{reasons}")
             raise typer.Exit(REJECTED)
         numbers = sprung.ride.ride_numbers(
             result,

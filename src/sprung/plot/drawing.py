@@ -11,10 +11,13 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import FixedFormatter, FixedLocator, NullLocator
 
 from sprung.errors import InputError, Problem, did_you_mean
-from sprung.report import LIGHT, Band, Curve, Mark, Panel, Picture, Points, Rule
+from sprung.report import LETTER, LIGHT, Band, Curve, Mark, Panel, Picture, Points, Rule, stack_labels
 
 _WIDTH, _HEIGHT = 7.0, 1.5
 """Width of a figure, and height of a panel of relative height 1, inches."""
+
+_LABEL, _LETTER, _LINE = 6.5, 3.6, 9.0
+"""Labels of vertical lines: size, mean width of a letter and line spacing, points."""
 
 _MARGINS = 0.9
 """Height above and below the panels, inches."""
@@ -72,10 +75,13 @@ def check_name(name: str, names: Sequence[str], what: str) -> str:
 
 def _new_axes(picture: Picture) -> tuple[Axes, ...]:
     heights = [panel.height for panel in picture.panels]
+    labels = _labelled(picture.panels[0])
+    levels = [level for _, _, level in stack_labels(labels, picture.x, 72 * _WIDTH * LETTER / _LETTER)]
+    above = _LINE / 72 * (1 + max(levels, default=-1))
     figure, grid = plt.subplots(
         len(heights),
         1,
-        figsize=(_WIDTH, _HEIGHT * sum(heights) + _MARGINS),
+        figsize=(_WIDTH, _HEIGHT * sum(heights) + _MARGINS + above),
         sharex=True,
         squeeze=False,
         height_ratios=heights,
@@ -87,7 +93,7 @@ def _new_axes(picture: Picture) -> tuple[Axes, ...]:
 
 def _draw_panel(picture: Picture, panel: Panel, axes: Axes, first: bool, last: bool) -> None:
     for mark in panel.marks:
-        _draw_mark(mark, axes, labelled=first)
+        _draw_mark(mark, axes)
     x, y = picture.x, panel.y
     axes.set_xscale("log" if x.log else "linear")
     axes.set_yscale("log" if y.log else "linear")
@@ -110,14 +116,36 @@ def _draw_panel(picture: Picture, panel: Panel, axes: Axes, first: bool, last: b
     for line, (text, colour) in enumerate(note for note in notes if note[0]):
         look: dict[str, Any] = {"ha": "right", "va": "top", "fontsize": 7, "color": LIGHT[colour]}
         axes.annotate(text, (1, 1), (-3, -3 - 9 * line), "axes fraction", "offset points", **look).set_parse_math(False)
+    labels = _labelled(panel) if first else []
+    _label_rules(labels, picture, axes)
     if first and axes.get_legend_handles_labels()[1]:
         # Above the panel, unless the labels of vertical lines are there.
         above: dict[str, Any] = {"loc": "lower left", "bbox_to_anchor": (0, 1), "borderaxespad": 0.2, "ncols": 3}
-        inside = any(isinstance(mark, Rule) and mark.label and not mark.horizontal for mark in panel.marks)
+        inside = bool(labels)
         axes.legend(frameon=False, fontsize=7, **({"loc": "best"} if inside else above))
 
 
-def _draw_mark(mark: Mark, axes: Axes, labelled: bool) -> None:
+def _labelled(panel: Panel) -> list[Rule]:
+    """Return the vertical lines of a panel that have a label."""
+    return [mark for mark in panel.marks if isinstance(mark, Rule) and mark.label and not mark.horizontal]
+
+
+def _label_rules(labels: list[Rule], picture: Picture, axes: Axes) -> None:
+    """Write the labels of vertical lines above the panel, stacked so that none overlap, as in the report."""
+    points = axes.get_window_extent().width * 72 / axes.figure.dpi
+    for mark, middle, level in stack_labels(labels, picture.x, points * LETTER / _LETTER):
+        look: dict[str, Any] = {"fontsize": _LABEL, "color": LIGHT[mark.role], "ha": "center", "va": "bottom"}
+        height = 2 + _LINE * level
+        if level:
+            line = {"arrowstyle": "-", "color": LIGHT[mark.role], "lw": 0.5, "shrinkA": 0, "shrinkB": 0}
+            axes.annotate("", (mark.at, 1), (0, height), axes.get_xaxis_transform(), "offset points", line, zorder=1)
+        text = axes.annotate(mark.label, (middle, 1), (0, height), "axes fraction", "offset points", zorder=2, **look)
+        text.set_parse_math(False)
+        # A label is in front of the lines of those above it.
+        text.set_bbox({"facecolor": "white", "edgecolor": "none", "pad": 0.4})
+
+
+def _draw_mark(mark: Mark, axes: Axes) -> None:
     match mark:
         case Curve():
             look: dict[str, Any] = {
@@ -139,13 +167,6 @@ def _draw_mark(mark: Mark, axes: Axes, labelled: bool) -> None:
         case Rule():
             look = {"color": LIGHT[mark.role], "lw": 0.8, "ls": "--" if mark.dashed else "-", "zorder": 1}
             (axes.axhline if mark.horizontal else axes.axvline)(mark.at, **look)
-            if mark.label and labelled and not mark.horizontal:
-                # Above the panel and slanted: labels close to each other remain readable.
-                slanted: dict[str, Any] = {"rotation": 55, "rotation_mode": "anchor", "ha": "left", "fontsize": 6.5}
-                place = axes.get_xaxis_transform()
-                axes.text(
-                    mark.at, 1.03, mark.label, transform=place, color=LIGHT[mark.role], parse_math=False, **slanted
-                )
         case Band():
             axes.axvspan(mark.low, mark.high, color=LIGHT["band"], lw=0, zorder=0)
 

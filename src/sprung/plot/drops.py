@@ -11,6 +11,7 @@ from sprung.errors import InputError, Problem
 from sprung.plot.drawing import check_name, draw
 from sprung.report import channels_picture, landing_picture, motion_picture, recording_picture
 from sprung.results import Result
+from sprung.vehicle import layout_of
 
 
 def fit(
@@ -25,8 +26,8 @@ def fit(
     drop
         Its name, such as ``empty_bounce``.
     channels
-        Names of channels to draw, m/s². Unless given, the body's vertical (m/s²), pitch and roll acceleration (rad/s²): the
-        paper's figures 7 to 9.
+        Names of channels to draw, m/s². Unless given, the body's vertical (m/s²), pitch and roll acceleration (rad/s²), as far
+        as the vehicle has these motions: the paper's figures 7 to 9.
     axes
         Two for each quantity, the second for the residual; a new figure unless given.
 
@@ -38,13 +39,16 @@ def fit(
     Raises
     ------
     InputError
-        If there is no such drop or channel.
+        If there is no such drop or channel, or the list of channels is empty.
     """
     series = result.series[check_name(drop, list(result.series), "drop")]
     if channels is not None:
+        if not channels:
+            do = f"Name some of {', '.join(series.channels)}; None draws the motion of the body."
+            raise InputError([Problem("channels", "none", "at least one channel", do)])
         names = [check_name(name, series.channels, "channel") for name in channels]
         return draw(channels_picture(drop, series, names, result.setup.units), axes)
-    return draw(motion_picture(drop, series, result.validation[drop]), axes)
+    return draw(motion_picture(drop, series, result.validation[drop], layout_of(result.parameters)), axes)
 
 
 def recording(

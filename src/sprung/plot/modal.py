@@ -12,9 +12,7 @@ from sprung.modal import StabilisationDiagram, stabilisation_diagram
 from sprung.modal_survey import LoadModes
 from sprung.plot.drawing import axes_or_new, check_name, draw
 from sprung.report import (
-    BODY_EDGES,
     LIGHT,
-    STRUTS,
     LoadDecays,
     decays_by_load,
     spectra_picture,
@@ -106,26 +104,29 @@ def mode(result: Result, name: str, load: str | None = None, *, phase: float = 0
     Raises
     ------
     InputError
-        If there is no such mode or load, or the result was rejected.
+        If there is no such mode or load, the phase is not finite, or the result was rejected.
     """
     if result.verdict.state == "reject":
         do = "Read result.verdict.reasons; sprung.modes finds modes without a vehicle model."
         raise InputError([Problem(f"mode {name}", "a rejected result, which has no modes", "accept or doubtful", do)])
+    if not np.isfinite(phase):
+        raise InputError([Problem("phase", f"{phase:g}", "a finite angle in rad", "Give a number, such as 0.")])
     load = check_name(load or next(iter(result.modes)), list(result.modes), "load")
     modes = {mode.name: mode for mode in result.modes[load]}
     shown = modes[check_name(name, list(modes), "mode")]
     car, axes = wire_frame(result), axes_or_new(axes)
     rise = (car.swing(shown.motion) * np.exp(1j * phase)).real
     moved = car.places - np.stack([np.zeros(len(rise)), rise], axis=1)
-    for i, j in BODY_EDGES:
+    for i, j in car.nodes.edges:
         axes.plot(*car.places[[i, j]].T, color=LIGHT["measured"], lw=0.8, ls="--")
         axes.plot(*moved[[i, j]].T, color=LIGHT["text"], lw=1.4)
-    for i, j in STRUTS:
+    for i, j in car.nodes.struts:
         axes.plot(*moved[[i, j]].T, color=LIGHT["simulated"], lw=1.6)
     around = np.linspace(0, 2 * np.pi, 60)
     for node, radius in car.circles:
-        x, y = moved[node]
-        axes.plot(x + radius * np.cos(around), y + radius * np.sin(around), color=LIGHT["residual"], lw=1.4)
+        circle = radius * np.stack([np.cos(around), np.sin(around)])
+        axes.plot(*(car.places[node][:, None] + circle), color=LIGHT["measured"], lw=0.8, ls="--")
+        axes.plot(*(moved[node][:, None] + circle), color=LIGHT["residual"], lw=1.4)
     axes.set_aspect("equal")
     axes.set(xlim=(0, car.width), ylim=(car.height, 0))
     axes.set_axis_off()

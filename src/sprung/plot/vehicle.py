@@ -11,6 +11,7 @@ from sprung.plot.drawing import axes_or_new, check_name, draw, draw_matrix
 from sprung.report import amplitude_pictures, curve_pictures, parameters_picture
 from sprung.results import Result, other_quantities
 from sprung.study import Validation
+from sprung.vehicle import FULL, layout_of
 
 
 def parameters(result: Result, *, axes: Axes | None = None) -> Axes:
@@ -56,6 +57,7 @@ def correlation(result: Result, *, axes: Axes | None = None) -> Axes:
         raise InputError([Problem("result", "no estimated parameters", "two or more", do)])
     axes = axes_or_new(axes)
     draw_matrix(result.correlation.names, result.correlation.matrix, axes)
+    axes.set_title("Correlation of the estimated parameters", fontsize=10, fontweight="bold", loc="left")
     return axes
 
 
@@ -85,10 +87,20 @@ def amplitude(
     """
     amplitudes = of.amplitude if isinstance(of, Result) else of.amplitudes
     if not amplitudes:
-        do = "Identify with amplitude=True."
-        raise InputError([Problem("result", "no amplitude curves", "a result with amplitude curves", do)])
+        raise InputError([_without_amplitudes(of)])
     pictures = {picture.title: picture for picture in amplitude_pictures(amplitudes)}
     return draw(pictures[check_name(mode, list(pictures), "mode")], axes)
+
+
+def _without_amplitudes(of: Result | Validation) -> Problem:
+    """Return why there are no amplitude curves."""
+    result = of if isinstance(of, Result) else of.result
+    needed = "vertical motion, pitch and roll of the body"
+    if layout_of(result.parameters) != FULL:
+        found = f"no amplitude curves: they need {needed}, which a part of a vehicle does not have together"
+        return Problem("result", found, "a result of a whole vehicle", "Read the modes in result.modes.")
+    do = f"Identify with amplitude=True; the sensors on the body have to show {needed}."
+    return Problem("result", "no amplitude curves", "a result with amplitude curves", do)
 
 
 def curve(result: Result, part: str = "damper", *, axes: Axes | None = None) -> Axes:

@@ -1,5 +1,6 @@
 """Everything people look at; reads every result, and nothing below reads it."""
 
+from sprung.report.drawing.legend import LETTER, stack_labels
 from sprung.report.drawing.palette import LIGHT
 from sprung.report.drawing.picture import Band, Curve, Mark, Panel, Picture, Points, Rule
 from sprung.report.drawing.svg import picture_frame, picture_svg
@@ -36,7 +37,7 @@ from sprung.report.pictures.recordings import landing_picture, recording_picture
 from sprung.report.pictures.spectra import spectra_picture
 from sprung.report.pictures.stability import stability_picture
 from sprung.report.pictures.transmissibility import transmissibility_picture
-from sprung.report.pictures.wire_frame import BODY_EDGES, HUBS, STRUTS, SolidFrame, solid_frame, wire_frame
+from sprung.report.pictures.wire_frame import SolidFrame, solid_frame, wire_frame
 from sprung.report.sketch.shapes import Disc, Drawing, Stroke, TextShape
 from sprung.report.sketch.sheet import blank_sketch, sketch_sheet
 from sprung.report.sketch.sketch import VehicleSketch, vehicle_sketch
@@ -56,14 +57,12 @@ from sprung.report.terminal.truth import truth_view
 from sprung.report.terminal.validation import validation_view
 
 __all__ = [
-    "BODY_EDGES",
     "CHECK_FILE",
     "FLEET_FILE",
-    "HUBS",
+    "LETTER",
     "LIGHT",
     "REPORT_FILES",
     "RESULT_FILES",
-    "STRUTS",
     "Band",
     "Curve",
     "Disc",
@@ -121,6 +120,7 @@ __all__ = [
     "solid_frame",
     "spectra_picture",
     "stability_picture",
+    "stack_labels",
     "text_of",
     "transmissibility_picture",
     "truth_view",

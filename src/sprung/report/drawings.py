@@ -15,6 +15,7 @@ from sprung.report.pictures.motions import motion_picture
 from sprung.report.pictures.recordings import landing_picture, recording_picture
 from sprung.report.terminal.validation import AMPLITUDES
 from sprung.study import Validation
+from sprung.vehicle import layout_of
 
 
 def draw_check(check: Check) -> dict[str, str]:
@@ -74,7 +75,7 @@ def draw_validation(validation: Validation) -> dict[str, str]:
     names = file_names(["amplitude", *result.series])
     next(names)  # used by the drawing above
     for name, (drop, series) in zip(names, result.series.items(), strict=True):
-        picture = motion_picture(drop, series, result.validation[drop])
+        picture = motion_picture(drop, series, result.validation[drop], layout_of(result.parameters))
         drawn[name] = draw_sheet(drop, [(_error_text(result.validation[drop]), False)], [picture])
     return drawn
 

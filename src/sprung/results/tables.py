@@ -3,13 +3,24 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping, Sequence
 
 from sprung.estimation import ForceCurve, ModeEstimate
 from sprung.results.records import SensorEstimate, TraceStep
 from sprung.tables import Table, unit_text, value_cells, with_std
 from sprung.uncertainty import Estimate, Ratio, round_by_uncertainty
-from sprung.vehicle import CHARACTERISTICS, LOAD_MASS, MOTION_RATIOS, PARAMETERS, WHEEL_LOADS, parameter_of
+from sprung.vehicle import (
+    CHARACTERISTICS,
+    FULL,
+    LOAD_MASS,
+    MOTION_RATIOS,
+    PARAMETERS,
+    WHEEL_LOADS,
+    Layout,
+    layout_of,
+    parameter_of,
+)
 
 TRACE_TITLE = "How the result was reached"
 """Title of the trace wherever it is shown."""
@@ -48,25 +59,41 @@ _CHARACTERISTICS = (
 """Rows of the table of characteristics: what is shown, and the quantities of front axle, rear axle and whole vehicle."""
 
 
+_EXACT_DIGITS = 6
+"""Significant figures of a derived quantity that is exact."""
+
 _VELOCITIES = (0.05, 0.1, 0.2, 0.3, 0.5, 0.8, 1.2)
 """Velocities of the table of damper forces, m/s."""
 
 
-def meaning_of(name: str) -> str:
+def meaning_of(name: str, layout: Layout = FULL) -> str:
     """Return the meaning of a parameter or derived quantity.
 
     Parameters
     ----------
     name
         Its name.
+    layout
+        Of the vehicle; in the pitch plane both wheels of an axle are one wheel station.
 
     Returns
     -------
     str
+
+    Examples
+    --------
+    >>> from sprung.vehicle import LAYOUTS
+    >>> meaning_of("m_uf"), meaning_of("m_uf", LAYOUTS["pitch-plane"])
+    ('unsprung mass, each front wheel', 'unsprung mass, front station')
     """
     if name in PARAMETERS or name.startswith(LOAD_MASS):
-        return parameter_of(name).meaning
-    return _DERIVED.get(name, _WHOLE_VEHICLE)
+        meaning = parameter_of(name).meaning
+    else:
+        meaning = _DERIVED.get(name, _WHOLE_VEHICLE)
+    if layout.rolls or not layout.pitches:
+        return meaning
+    meaning = re.sub(r"\bof each (front|rear) wheel", r"of the \1 station", meaning)
+    return re.sub(r"\beach (front|rear) wheel", r"\1 station", meaning)
 
 
 def parameters_table(vehicle: str, parameters: Mapping[str, Estimate]) -> Table:
@@ -84,7 +111,8 @@ def parameters_table(vehicle: str, parameters: Mapping[str, Estimate]) -> Table:
     Table
     """
     headers = ("parameter", "value", "±", "%", "unit", "status", "meaning")
-    rows = tuple((name, *value_cells(estimate), meaning_of(name)) for name, estimate in parameters.items())
+    layout = layout_of(parameters)
+    rows = tuple((name, *value_cells(estimate), meaning_of(name, layout)) for name, estimate in parameters.items())
     title = f"{vehicle}: parameters, one standard uncertainty"
     return Table(title, headers, rows, frozenset(("value", "±", "%")), ("meaning", "%", "status"))
 
@@ -122,7 +150,7 @@ def derived_table(vehicle: str, derived: Mapping[str, Estimate]) -> Table:
     rows = []
     for name in (name for _, *names in _CHARACTERISTICS for name in names if name in derived):
         value, std, _, unit, _ = value_cells(derived[name])
-        rows.append((name, value, std, unit))
+        rows.append((name, _rounded(derived[name], value), std, unit))
     headers = ("empty vehicle", "value", "±", "unit")
     title = f"{vehicle}: masses, ride and wheel hop, one standard uncertainty"
     return Table(title, headers, tuple(rows), frozenset(("value", "±")))
@@ -196,7 +224,12 @@ def _with_uncertainty(estimate: Estimate | None) -> str:
     if estimate is None or estimate.value is None or estimate.std is None:
         return "-"
     value, std = round_by_uncertainty(estimate.value, estimate.std)
-    return f"{value} ± {std}" if std else value
+    return f"{value} ± {std}" if std else _rounded(estimate, value)
+
+
+def _rounded(estimate: Estimate, text: str) -> str:
+    """Return the text of a derived value, an exact one with as many digits as are of use: nobody stated it with more."""
+    return f"{estimate.value:.{_EXACT_DIGITS}g}" if estimate.value is not None and estimate.std == 0 else text
 
 
 def ratios_table(ratios: Mapping[str, Ratio]) -> Table:

@@ -22,6 +22,9 @@ from sprung.vehicle import EMPTY, Load, Vehicle
 
 Real = NDArray[np.float64]
 
+_KMH = 3.6
+"""km/h in 1 m/s."""
+
 
 def ride_numbers(
     source: Result | Vehicle,
@@ -181,7 +184,7 @@ class _Assembly:
             yield (
                 "The vehicle is not linear: on each road it is linearised at the amplitudes of its motion there (statistical "
                 "linearisation), on a suspension tester at those of each frequency (harmonic linearisation), and quarter cars, "
-                f"modes and transmissibilities hold on road {drive.road.name} at {drive.speed:.3g} m/s."
+                f"modes and transmissibilities hold on road {drive.road.name} at {_KMH * drive.speed:.3g} km/h."
             )
         if not self.distribution.is_scaled:
             yield (
@@ -199,7 +202,7 @@ class _Assembly:
         if lifted:
             yield f"On a tester wheel {', '.join(lifted)} would lift off the plate: its minimum force is zero."
         high = [
-            f"{drive.road.name} at {drive.speed:.3g} m/s"
+            f"{drive.road.name} at {_KMH * drive.speed:.3g} km/h"
             for i, drive in enumerate(self.options.drives)
             for coefficients in [
                 [v for k, v in self.base.numbers.items() if k[:2] == ("roads", f"{i}") and k[-1] == "load_coefficient"]

@@ -17,8 +17,8 @@ _AXLE_ROWS = (
     ("body, damping ratio", "body_damping"),
     ("wheel hop, natural frequency, Hz", "hop_frequency"),
     ("wheel hop, damping ratio", "hop_damping"),
-    ("sprung mass on a wheel, kg", "m_s"),
-    ("unsprung mass of a wheel, kg", "m_u"),
+    ("sprung mass on a {}, kg", "m_s"),
+    ("unsprung mass of a {}, kg", "m_u"),
     ("spring rate, N/m", "k_s"),
     ("tyre rate, N/m", "k_t"),
     ("damper rate, N s/m", "c_s"),
@@ -96,9 +96,15 @@ def _rows(names: Sequence[tuple[str, str]], columns: Sequence[Mapping[str, Estim
             yield (label, *cells)
 
 
+def _is_pitch_plane(numbers: RideNumbers) -> bool:
+    """Return whether left and right are not told apart: both wheels of an axle are then one wheel station."""
+    return "pitch" in numbers.half_cars and "roll" not in numbers.half_cars
+
+
 def _axles(numbers: RideNumbers) -> Table:
-    headers = ("quarter car", *numbers.axles)
-    rows = list(_rows(_AXLE_ROWS, list(numbers.axles.values())))
+    part, station = ("axle", "station") if _is_pitch_plane(numbers) else ("quarter car", "wheel")
+    headers = (part, *numbers.axles)
+    rows = list(_rows([(label.format(station), name) for label, name in _AXLE_ROWS], list(numbers.axles.values())))
     for label, kind, name in _PEAK_ROWS:
         peaks = [
             numbers.peaks.get(kind if axle == "axle" else f"{kind}_{axle}", {}).get(name) for axle in numbers.axles
@@ -212,7 +218,12 @@ def _wheels(numbers: RideNumbers) -> Table:
 
 def _half_cars(numbers: RideNumbers) -> Iterator[Table]:
     if numbers.half_cars:
-        names = {"pitch": "pitch, one side", "roll": "roll, both axles"}
-        headers = ("half car", *(names[plane] for plane in numbers.half_cars))
+        title, part, pitch = (
+            ("Pitch plane", "both sides together", "pitch plane")
+            if _is_pitch_plane(numbers)
+            else ("Half cars", "half car", "pitch, one side")
+        )
+        names = {"pitch": pitch, "roll": "roll, both axles"}
+        headers = (part, *(names[plane] for plane in numbers.half_cars))
         rows = tuple(_rows(_HALF_ROWS, list(numbers.half_cars.values())))
-        yield Table("Half cars", headers, rows, frozenset(headers[1:]))
+        yield Table(title, headers, rows, frozenset(headers[1:]))

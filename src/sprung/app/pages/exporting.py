@@ -20,12 +20,13 @@ from sprung.errors import InputError, Problem, Problems
 
 @dataclass(frozen=True, slots=True)
 class _Format:
-    """A format that the page offers: its name in the command, what it is, and its options."""
+    """A format that the page offers: its name in the command, what it is, its options, and whether it needs all parameters."""
 
     name: str
     title: str
     text: str
     options: tuple[str, ...]
+    needs_vehicle: bool = True
 
 
 _FORMATS = (
@@ -45,8 +46,8 @@ _FORMATS = (
         "Vehicles drawn from the joint distribution of the parameters, one in each row, for Monte Carlo studies.",
         ("number", "seed", "table"),
     ),
-    _Format("markdown", "Markdown", "Tables of the result, to be pasted into a text.", ()),
-    _Format("latex", "LaTeX", "Tables of the result, for a paper.", ()),
+    _Format("markdown", "Markdown", "Tables of the result, to be pasted into a text.", (), False),
+    _Format("latex", "LaTeX", "Tables of the result, for a paper.", (), False),
 )
 
 

@@ -17,6 +17,9 @@ from sprung.errors import InputError, Problem, Problems
 
 _ROADS = "ABCDEFGH"
 _TRACKS = ("isotropic", "same", "independent")
+_SLOWEST, _FASTEST = 1.8, 540.0
+"""km/h: the limits of the command."""
+
 _PLACE = "two or three coordinates in m, such as -1.4 0.4"
 
 
@@ -42,7 +45,8 @@ def _options(form: Form) -> dict[str, Value]:
     problems = Problems()
     options: dict[str, Value] = {"road": [road for road in form.get("road", []) if road and road in _ROADS] or None}
     with problems.collect():
-        speeds = read_numbers(form.text("speed"), "Speeds", 1, 400, "speeds from 1 to 400 km/h")
+        expected = f"speeds from {_SLOWEST:g} to {_FASTEST:g} km/h"
+        speeds = read_numbers(form.text("speed"), "Speeds", _SLOWEST, _FASTEST, expected)
         options["speed"] = [f"{speed:g}" for speed in speeds] or None
     seats = []
     for line in form.text("seat").splitlines():

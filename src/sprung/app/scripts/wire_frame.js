@@ -8,6 +8,7 @@ export const VIEWS = {
 };
 
 const SIDES = 28; // of a wheel that is drawn as a polygon
+const GROUND = 0.25; // least extent of the ground to either side, in wheelbases
 const DISTANCE = 4.5; // of the eye from the vehicle, in wheelbases
 
 // Where points are on a picture: x to the right and y down in pixels, and how far away. The eye is on the left of the vehicle
@@ -29,8 +30,8 @@ export const raised = (places, rises) => places.map(([x, y, z], i) => [x, y, z +
 
 // The scene as the server sends it, with the point about which the camera turns.
 export function prepare(scene) {
-  const hubs = scene.hubs.map((hub) => scene.places[hub]);
-  const middle = (hubs[0][0] + hubs[2][0]) / 2;
+  const along = scene.hubs.map((hub) => scene.places[hub][0]);
+  const middle = (Math.min(...along) + Math.max(...along)) / 2;
   return { ...scene, middle: [middle, 0, 0.33 * scene.wheelbase] };
 }
 
@@ -56,8 +57,9 @@ export function draw(context, width, height, scene, camera, rises, colours, capt
   context.fillStyle = colours.paper;
   context.fillRect(0, 0, width, height);
   const { places } = scene;
-  const xs = places.map(([x]) => x), half = Math.max(...places.map(([, y]) => y));
-  const [rear, front] = [Math.min(...xs), Math.max(...xs)];
+  // A part of a vehicle may have no length or width: the ground below it has some.
+  const xs = places.map(([x]) => x), half = Math.max(...places.map(([, y]) => y)) || GROUND * scene.wheelbase;
+  const rear = Math.min(-GROUND * scene.wheelbase, ...xs), front = Math.max(GROUND * scene.wheelbase, ...xs);
   for (const y of [-half, 0, half]) line(context, [at([rear, y, 0]), at([front, y, 0])], colours.hair, unit);
   for (let i = 0; i <= 4; i++) {
     const x = rear + (i / 4) * (front - rear);
@@ -67,6 +69,7 @@ export function draw(context, width, height, scene, camera, rises, colours, capt
   const wheels = (nodes, colour, thick, dash) => scene.hubs.forEach((hub) => line(context, circle(nodes[hub], scene.wheel).map(at), colour, thick, dash));
   joined(scene.edges, places, colours.reference, 0.8 * unit, [3 * unit, 2.5 * unit]);
   const nodes = raised(places, rises);
+  wheels(places, colours.reference, 0.8 * unit, [3 * unit, 2.5 * unit]);
   wheels(nodes, colours.residual, 2 * unit);
   joined(scene.struts, nodes, colours.simulated, 2.2 * unit);
   joined(scene.edges, nodes, colours.text, 1.7 * unit);

@@ -94,6 +94,8 @@ def axis_limits(*values: Real, least: float = 0.0, margin: float = 0.06) -> tupl
     """
     finite = np.concatenate([np.ravel(array)[np.isfinite(np.ravel(array))] for array in values])
     low, high = (float(finite.min()), float(finite.max())) if finite.size else (-1.0, 1.0)
+    if low == high == 0:  # a quantity that is zero throughout has no scale of its own
+        low, high = -1.0, 1.0
     span = max(high - low, least, 1e-12 * max(abs(low), abs(high)), np.finfo(float).tiny ** 0.5)
     middle = (low + high) / 2
     return middle - span * (0.5 + margin), middle + span * (0.5 + margin)

@@ -69,6 +69,33 @@ def label_levels(labels: list[Rule], axis: Axis, width: float) -> list[int]:
     return levels
 
 
+def stack_labels(labels: list[Rule], axis: Axis, width: float) -> Iterator[tuple[Rule, float, int]]:
+    """Yield every label with its place above the panels, such that none overlap.
+
+    Parameters
+    ----------
+    labels
+        Vertical lines, each with a label.
+    axis
+        The horizontal axis.
+    width
+        Of the panels, units of `LETTER`.
+
+    Yields
+    ------
+    mark : Rule
+        The line with its label.
+    middle : float
+        Of the label along the axis, dimensionless, 0 to 1.
+    level : int
+        Its line above the panels, 0 for the lowest.
+    """
+    for mark, level in zip(labels, label_levels(labels, axis, width), strict=True):
+        place = float(axis.at(np.array(mark.at)))
+        if 0 <= place <= 1:
+            yield mark, _kept_inside(place * width, LETTER * len(mark.label) / 2, width) / width, level
+
+
 def _kept_inside(middle: float, half: float, width: float) -> float:
     """Return the middle of a label, moved so far that the label is within the picture."""
     return min(max(middle, half), width + RIGHT - half)

@@ -10,7 +10,7 @@ import numpy as np
 
 from sprung.estimation import ModeEstimate
 from sprung.report.drawing.picture import Real
-from sprung.report.pictures.wire_frame import BODY_EDGES, STRUTS, WireFrame
+from sprung.report.pictures.wire_frame import WireFrame
 
 
 def mode_drawings(car: WireFrame, modes: Sequence[ModeEstimate]) -> Iterator[dict[str, Any]]:
@@ -32,12 +32,12 @@ def mode_drawings(car: WireFrame, modes: Sequence[ModeEstimate]) -> Iterator[dic
             "height": f"{car.height:.0f}",
             "swing": " ".join(f"{part.real:.2f},{part.imag:.2f}" for part in swing.tolist()),
             "creeps": mode.pole[1] == 0,
-            "rest": _lines(BODY_EDGES, car.places),
-            "edges": _lines(BODY_EDGES, moved),
-            "struts": _lines(STRUTS, moved),
-            "circles": [
-                (*(f"{part:.1f}" for part in moved[node].tolist()), f"{radius:.1f}") for node, radius in car.circles
-            ],
+            "view": car.view,
+            "rest": _lines(car.nodes.edges, car.places),
+            "edges": _lines(car.nodes.edges, moved),
+            "struts": _lines(car.nodes.struts, moved),
+            "circles_at_rest": _circles(car, car.places),
+            "circles": _circles(car, moved),
             "caption": mode_caption(mode),
             "description": f"{mode.name}: wire frame in the shape of this mode",
         }
@@ -46,14 +46,19 @@ def mode_drawings(car: WireFrame, modes: Sequence[ModeEstimate]) -> Iterator[dic
 def wire_json(car: WireFrame) -> str:
     """Return the wire frame at rest as JSON for the script of the page."""
     places = [[round(x, 1), round(y, 1)] for x, y in car.places.tolist()]
+    nodes, circles = car.nodes, [node for node, _ in car.circles]
     return json.dumps(
-        {"places": places, "edges": BODY_EDGES, "struts": STRUTS, "circles": [node for node, _ in car.circles]},
-        separators=(",", ":"),
+        {"places": places, "edges": nodes.edges, "struts": nodes.struts, "circles": circles}, separators=(",", ":")
     )
 
 
 def _lines(pairs: Sequence[tuple[int, int]], places: Real) -> str:
     return "".join(f"M{places[i, 0]:.1f} {places[i, 1]:.1f}L{places[j, 0]:.1f} {places[j, 1]:.1f}" for i, j in pairs)
+
+
+def _circles(car: WireFrame, places: Real) -> list[tuple[str, ...]]:
+    """Return centre and radius of every circle."""
+    return [(*(f"{part:.1f}" for part in places[node].tolist()), f"{radius:.1f}") for node, radius in car.circles]
 
 
 def mode_caption(mode: ModeEstimate) -> str:

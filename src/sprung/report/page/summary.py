@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 from sprung.results import Result
 from sprung.tables import percent_text
+from sprung.vehicle import VehicleModel, layout_of
 
 
 class VerdictText(NamedTuple):
@@ -41,6 +42,14 @@ _VERDICTS = {
         "Reasons:",
     ),
 }
+
+_MODELS: Mapping[VehicleModel, str] = {
+    "full": "seven degrees of freedom",
+    "pitch-plane": "pitch plane, four degrees of freedom",
+    "roll-plane": "roll plane, four degrees of freedom",
+    "quarter": "quarter car, two degrees of freedom",
+}
+"""The linear model of a whole vehicle, and of each part of one."""
 
 
 def verdict_text(result: Result) -> VerdictText:
@@ -91,7 +100,7 @@ def summary_of(result: Result) -> Iterator[tuple[str, str]]:
     loads = ", ".join(f"{count} {load}" for load, count in Counter(drop.load for drop in used).items())
     left = len(result.drops) - len(used)
     yield "Drops", f"{len(used)} fitted together ({loads})" + (f", {left} left out" if left else "")
-    yield "Model", _model(result)
+    yield "Model", model_text(result)
     states = Counter(estimate.status for estimate in result.parameters.values())
     counts = [f"{states[name]} {name}" for name in ("estimated", "known", "unidentifiable") if states[name]]
     yield "Parameters", ", ".join(counts)
@@ -116,9 +125,21 @@ def summary_of(result: Result) -> Iterator[tuple[str, str]]:
         )
 
 
-def _model(result: Result) -> str:
+def model_text(result: Result) -> str:
+    """Return the identified model in words: its degrees of freedom and model terms.
+
+    Parameters
+    ----------
+    result
+        The result.
+
+    Returns
+    -------
+    str
+    """
     extras = result.fit.model
-    return "seven degrees of freedom" + (f", with {', '.join(extras)}" if extras else "")
+    linear = _MODELS[layout_of(result.parameters).model]
+    return linear + (f", with {', '.join(extras)}" if extras else "")
 
 
 def symbol_parts(name: str) -> tuple[str, str]:

@@ -61,7 +61,7 @@ def _picture(result: Result, axle: str, points: Sequence[DamperPoints]) -> Pictu
     )
     panel = Panel(Axis("force, N", *axis_limits(force, curve)), shown, height=2.1)
     below = Panel(
-        Axis("points minus model, N", *axis_limits(apart, band, -band)),
+        Axis("deviation, N", *axis_limits(apart, band, -band)),
         (
             Rule(0.0, "reference", horizontal=True),
             Points(velocity[::every], apart[::every], "residual", size=0.4),

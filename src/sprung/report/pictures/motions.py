@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.assessment import MOTIONS, DropValidation
+from sprung.assessment import MOTIONS, DropValidation, motions_of
 from sprung.report.drawing.axis import Axis, axis_limits
 from sprung.report.drawing.picture import Curve, Panel, Picture, Rule
 from sprung.results import Series
+from sprung.vehicle import Layout
 
 Real = NDArray[np.float64]
 
 _UNITS = ("m/s²", "rad/s²", "rad/s²")
 
 
-def motion_picture(name: str, series: Series, drop: DropValidation) -> Picture:
+def motion_picture(name: str, series: Series, drop: DropValidation, layout: Layout) -> Picture:
     """Return the picture of the body's motion in one drop.
 
     Parameters
@@ -26,6 +29,8 @@ def motion_picture(name: str, series: Series, drop: DropValidation) -> Picture:
         As it was fitted.
     drop
         Its validation.
+    layout
+        Of the vehicle: a motion that it does not have is left out.
 
     Returns
     -------
@@ -33,14 +38,26 @@ def motion_picture(name: str, series: Series, drop: DropValidation) -> Picture:
     """
     measured, simulated = series.body_measured.astype(float), series.body_simulated.astype(float)
     panels: list[Panel] = []
-    for i, motion in enumerate(MOTIONS):
+    motions = motions_of(layout)
+    for motion in motions:
+        i = MOTIONS.index(motion)
         note = "not measured by the sensors in use" if np.isnan(measured[i]).all() else _note(motion, drop)
         panels += comparison_panels(motion, _UNITS[i], series.time, measured[i], simulated[i], note)
     x = Axis("time on the recording's clock, s", float(series.time[0]), float(series.time[-1]))
-    description = (
-        "Vertical, pitch and roll acceleration of the body, measured and simulated, and below each the residual."
-    )
+    description = f"{motions_text(motions)} of the body, measured and simulated, and below each the residual."
     return Picture(name, x, tuple(panels), description, zoomable=True)
+
+
+def motions_text(motions: Sequence[str]) -> str:
+    """Return the accelerations of the body in words, at the beginning of a sentence.
+
+    Examples
+    --------
+    >>> motions_text(("vertical", "pitch", "roll")), motions_text(("vertical",))
+    ('Vertical, pitch and roll acceleration', 'Vertical acceleration')
+    """
+    *others, last = motions
+    return f"{' and '.join(part for part in (', '.join(others), last) if part)} acceleration".capitalize()
 
 
 def _note(motion: str, drop: DropValidation) -> str:

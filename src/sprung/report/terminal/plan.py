@@ -88,20 +88,29 @@ def _cells(plan: Plan, row: PlanRow, names: Sequence[str]) -> Iterator[str]:
 
 
 def _reasons(plan: Plan) -> Iterator[str]:
-    """Yield the reason for every dash, each once."""
-    rows: dict[str, list[str]] = {}
+    """Yield the reason for every dash, each once: those of parameters that are missing in the same tests together."""
+    rows: dict[tuple[str, str], list[str]] = {}
     for row in plan.rows:
-        if row.refused is not None:
-            rows.setdefault(f"not possible: {row.refused}", []).append(row.label)
-        elif row.bound is not None:
-            for combination in row.bound.unidentifiable:
-                # The text about the scale does not name its parameters, the others begin with their names.
-                names = (
-                    ""
-                    if combination.parameters[0] in combination.text.replace(",", " ").split()
-                    else f"{', '.join(combination.parameters)}: "
-                )
-                rows.setdefault(f"{names}{combination.text}", []).append(row.label)
-    for reason, labels in rows.items():
-        others = f" and {len(labels) - _NAMED} more" if len(labels) > _NAMED else ""
-        yield f"{', '.join(labels[:_NAMED])}{others}: {reason}"
+        for reason in _reasons_of(row):
+            rows.setdefault(reason, []).append(row.label)
+    together: dict[tuple[str, tuple[str, ...]], list[str]] = {}
+    for (name, text), labels in rows.items():
+        together.setdefault((text, tuple(labels)), []).append(name)
+    for (text, tests), names in together.items():
+        others = f" and {len(tests) - _NAMED} more" if len(tests) > _NAMED else ""
+        subject = f"{', '.join(names)}: each " if len(names) > 1 else f"{names[0]} ".lstrip()
+        yield f"{', '.join(tests[:_NAMED])}{others}: {subject}{text}"
+
+
+def _reasons_of(row: PlanRow) -> Iterator[tuple[str, str]]:
+    """Yield the reasons for the dashes of a row: the parameter whose name begins the text, if it is one alone, and the text."""
+    if row.refused is not None:
+        yield "", f"not possible: {row.refused}"
+    for combination in row.bound.unidentifiable if row.bound is not None else ():
+        names, text = combination.parameters, combination.text
+        if len(names) == 1 and text.startswith(f"{names[0]} "):
+            yield names[0], text.removeprefix(f"{names[0]} ")
+        elif names[0] in text.replace(",", " ").split():
+            yield "", text
+        else:  # the text about the scale does not name its parameters
+            yield "", f"{', '.join(names)}: {text}"

@@ -29,6 +29,10 @@ from sprung.uncertainty import Estimate, round_by_uncertainty
 COLOURS = {"accept": "green", "doubtful": "yellow", "reject": "red"}
 
 
+_UNEXPLAINED = 0.95
+"""Residual over the signal of a drop above which nothing of the signal is modelled."""
+
+
 def result_view(result: Result) -> RenderableType:
     """Return the view of a result.
 
@@ -99,11 +103,12 @@ def residual_table(result: Result) -> RenderableType:
     fit = result.fit
     worst = sorted(fit.misfit, key=lambda channel: -fit.misfit[channel])
     units = result.setup.units
+    # Where no drop has a modelled signal there is no error of it: all of the signal is residual.
+    drops = result.validation.values()
+    is_modelled = not drops or any(drop.fitted < _UNEXPLAINED for drop in drops)
+    errors = {name: f"{100 * part:.1f}" if part or is_modelled else "-" for name, part in fit.misfit.items()}
     alike = len(set(units.values())) == 1
-    rows = [
-        [name, f"{100 * fit.misfit[name]:.1f}", f"{fit.noise[name]:.3g}{'' if alike else f' {units[name]}'}"]
-        for name in worst
-    ]
+    rows = [[name, errors[name], f"{fit.noise[name]:.3g}{'' if alike else f' {units[name]}'}"] for name in worst]
     headers = ("channel", "model error, % of signal", f"residual, {f'{units[worst[0]]} ' if alike else ''}rms")
     return render_rows("Residuals", headers, rows, headers[1:])
 

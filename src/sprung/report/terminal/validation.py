@@ -7,11 +7,12 @@ from collections.abc import Mapping, Sequence
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from sprung.assessment import AmplitudeCurve, DropValidation, ModeAmplitude
+from sprung.assessment import AmplitudeCurve, DropValidation, ModeAmplitude, motions_of
 from sprung.report.terminal.layout import hanging_text, render_table, significant_figures
 from sprung.report.terminal.result import fault_list, verdict_view
 from sprung.study import Validation
 from sprung.tables import Table
+from sprung.vehicle import Layout, layout_of
 
 COLUMNS = (
     "/noise: residual over the sensors' noise. Predicted: by the vehicle fitted to all other drops. Autocorrelation: largest "
@@ -44,7 +45,7 @@ def validation_view(validation: Validation) -> RenderableType:
     """
     result = validation.result
     parts: list[RenderableType] = [
-        render_table(validation_table(result.name, result.validation)),
+        render_table(validation_table(result.name, result.validation, layout_of(result.parameters))),
         hanging_text("", COLUMNS),
         Text(),
     ]
@@ -55,7 +56,7 @@ def validation_view(validation: Validation) -> RenderableType:
     return Group(*parts, verdict_view(result))
 
 
-def validation_table(vehicle: str, drops: Mapping[str, DropValidation]) -> Table:
+def validation_table(vehicle: str, drops: Mapping[str, DropValidation], layout: Layout) -> Table:
     """Return the table of fitted and predicted errors by drop.
 
     Parameters
@@ -64,12 +65,13 @@ def validation_table(vehicle: str, drops: Mapping[str, DropValidation]) -> Table
         Name of the vehicle.
     drops
         By name.
+    layout
+        Of the vehicle: a motion that it does not have gets no column.
     """
+    motions = motions_of(layout)
     headers = (
         "drop",
-        "vertical %",
-        "pitch %",
-        "roll %",
+        *(f"{motion} %" for motion in motions),
         "all %",
         "/noise",
         "predicted %",
@@ -79,7 +81,8 @@ def validation_table(vehicle: str, drops: Mapping[str, DropValidation]) -> Table
     rows = tuple(
         (
             name,
-            *(_percent(error) for error in (drop.vertical, drop.pitch, drop.roll, drop.fitted)),
+            *(_percent(getattr(drop, motion)) for motion in motions),
+            _percent(drop.fitted),
             f"{drop.residual:.2f}",
             _percent(drop.predicted),
             "-" if drop.predicted_residual is None else f"{drop.predicted_residual:.2f}",

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from collections import defaultdict
 
+from sprung.assessment import motions_of
 from sprung.checking import DropReport
 from sprung.errors import Fault
 from sprung.report.excitations import limits_text, readings_text, records_text
 from sprung.report.page.sections.context import Context
-from sprung.report.pictures.motions import motion_picture
+from sprung.report.pictures.motions import motion_picture, motions_text
 from sprung.report.pictures.recordings import beginning_title, landing_picture, recording_picture
 from sprung.report.terminal.check import drops_table
 from sprung.report.terminal.validation import COLUMNS, validation_table
 from sprung.results import Result
+from sprung.vehicle import layout_of
 
 
 def recordings(result: Result, unfolded: bool) -> Context:
@@ -66,19 +68,21 @@ def _merged(faults: tuple[Fault, ...]) -> list[Fault]:
 def motions(result: Result, unfolded: bool) -> Context:
     """Return the motion of the body in each drop, measured and simulated, with the errors."""
     groups: dict[str, list[Context]] = {}
+    layout = layout_of(result.parameters)
     unfolded_drops = _unfolded_drops(result)
     for drop in result.drops:
         if drop.name in result.series:
             validated = result.validation[drop.name]
             groups.setdefault(drop.load, []).append(
                 {
-                    "picture": motion_picture(drop.name, result.series[drop.name], validated),
+                    "picture": motion_picture(drop.name, result.series[drop.name], validated, layout),
                     "caption": f"residual {validated.residual:.2f} times the noise",
                     "open": unfolded or drop.name in unfolded_drops,
                 }
             )
     return {
-        "overview": validation_table(result.name, result.validation),
+        "accelerations": motions_text(motions_of(layout)),
+        "overview": validation_table(result.name, result.validation, layout),
         "columns": COLUMNS,
         "groups": [
             {"title": f"{load}: {len(drops)} drop{'s' * (len(drops) > 1)}", "drops": drops}

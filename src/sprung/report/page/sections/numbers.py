@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 from markupsafe import Markup
@@ -24,13 +24,22 @@ from sprung.results import (
 from sprung.tables import Table, unit_text, value_cells
 from sprung.uncertainty import Estimate, round_by_uncertainty
 from sprung.units import quantity_name
-from sprung.vehicle import Layout, Sensor, layout_of
+from sprung.vehicle import Layout, Sensor, VehicleModel, layout_of
 
 _CLOSE = 0.9
 """Correlation above which a pair of parameters is listed."""
 
 _STRENGTHS = (0.3, 0.5, 0.7, 0.9)
 """Correlations at which the shade of a cell gets darker."""
+
+
+_SUBSYSTEM: Mapping[VehicleModel, str] = {
+    "full": "of the quarter car of each axle: half of the sprung mass on the axle",
+    "pitch-plane": "of each axle alone: the sprung mass on the axle",
+    "roll-plane": "of the quarter car of one side: half of the sprung mass",
+    "quarter": "of the quarter car: its sprung mass",
+}
+"""The uncoupled subsystem that frequencies and damping ratios of ride and wheel hop belong to, and its sprung mass."""
 
 
 def symbol(name: str) -> Markup:
@@ -42,14 +51,16 @@ def symbol(name: str) -> Markup:
 def characteristics(result: Result) -> Context | None:
     """Return masses, loads, centre of gravity, ride and wheel hop."""
     tables = characteristics_tables(result.name, result.derived)
-    return {"tables": tables} if tables else None
+    subsystem = _SUBSYSTEM[layout_of(result.parameters).model]
+    return {"tables": tables, "subsystem": subsystem} if tables else None
 
 
 def parameters(result: Result) -> Context:
     """Return every parameter with its interval; none of a rejected result."""
     estimates = {} if result.verdict.state == "reject" else {**result.parameters, **other_quantities(result.derived)}
     half = half_width(estimates)
-    rows = [_parameter(name, estimate, half) for name, estimate in estimates.items()]
+    layout = layout_of(result.parameters)
+    rows = [_parameter(name, estimate, half, layout) for name, estimate in estimates.items()]
     profiled = [name for name, estimate in estimates.items() if estimate.interval_from == "profile"]
     scale_free = not result.scale.known and bool(result.scale.per_total_mass)
     return {
@@ -82,12 +93,12 @@ def curves(result: Result) -> Context | None:
     return {"text": text, "pictures": pictures, "tables": tables, "notes": notes} if pictures else None
 
 
-def _parameter(name: str, estimate: Estimate, half: float) -> Context:
+def _parameter(name: str, estimate: Estimate, half: float, layout: Layout) -> Context:
     value, std, percent, unit, status = value_cells(estimate)
     row: Context = {
         "name": name,
         "symbol": symbol(name),
-        "meaning": meaning_of(name),
+        "meaning": meaning_of(name, layout),
         "value": value,
         "std": std,
         "percent": percent,

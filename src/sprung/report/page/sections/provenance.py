@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from sprung.report.page.literature import references_of
 from sprung.report.page.sections.context import Context
+from sprung.report.page.summary import model_text
 from sprung.results import Result, trace_table
 from sprung.tables import Table
 
@@ -20,7 +21,7 @@ def settings(result: Result) -> Context:
     fit = result.fit
     pairs = [
         ("method", fit.method),
-        ("model", f"seven degrees of freedom{', with ' + ', '.join(fit.model) if fit.model else ''}"),
+        ("model", model_text(result)),
         ("half-distances", f"{fit.tracks}"),
         ("reason for the model", fit.why),
         ("axes of the inertias", fit.axes),
