@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from rich.console import Console
 
 import sprung
 from command_line import run
@@ -150,7 +151,8 @@ def test_an_exact_wheelbase_is_shown_as_exact(identified: Identified) -> None:
     assert spread.exact
     assert spread.mean == pytest.approx(2.76, rel=1e-12)
     assert (spread.mean_std, spread.error, spread.spread, spread.hierarchical_error) == (0.0, 0.0, 0.0, 0.0)
-    line = next(line for line in text_of(fleet_view(fleet)).splitlines() if line.startswith("wheelbase"))
+    shown = text_of(fleet_view(fleet), Console(width=120))
+    line = next(line for line in shown.splitlines() if line.startswith("wheelbase"))
     assert line.split() == ["wheelbase", "2.76", "exact", "m", "-", "-", "-", "-", "-"]
     table = read_rows(folder / "out" / "hierarchical", ("parameter", "single_std", "hierarchical", "hierarchical_std"))
     rows = [row for row in table if row["parameter"] == "wheelbase"]
