@@ -253,6 +253,15 @@ def test_the_motion_turns_stops_and_is_saved_on_white(user: Tabs, tmp_path: Path
     assert page.locator("#dampers svg path.points").count() >= 4
 
 
+def test_a_recording_that_is_marked_before_the_script_arrives_is_shown(user: Tabs) -> None:
+    page, held = user.open("/"), list[Any]()
+    page.route("**/scripts/recordings.js", lambda route: held.append(route))  # noqa: PLW0108 (playwright marks it)
+    page.goto(page.url.split("?")[0].rstrip("/") + "/recordings", wait_until="commit")
+    page.locator("#files input").first.check()
+    held[0].continue_()
+    page.locator("#chosen li").wait_for()
+
+
 def test_recordings_are_shown_side_by_side(user: Tabs, tmp_path: Path) -> None:
     page = user.open("/recordings")
     page.get_by_label("Search files and channels").fill("after/empty_b")

@@ -284,7 +284,11 @@ async function begin() {
     if (present.has(file)) chosen.set(file, { offset: Number(offsets[i] ?? 0) || 0, samples: new Map() });
   });
   query.getAll("channel").forEach((channel) => shown.add(channel));
-  boxes().forEach((box) => { box.checked = chosen.has(box.value); });
+  boxes().forEach((box) => {
+    // What was marked before this script arrived is meant as well.
+    if (box.checked && !chosen.has(box.value)) chosen.set(box.value, { offset: 0, samples: new Map() });
+    box.checked = chosen.has(box.value);
+  });
   if (query.has("low") && Number(query.get("high")) > Number(query.get("low"))) view = [Number(query.get("low")), Number(query.get("high"))];
   listen();
   try {
