@@ -12,6 +12,7 @@ import sprung
 from sprung.errors import InputError
 from sprung.report import write_report
 from sprung.simulation import default_sensors
+from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import TABLE_1_CAR, Sensor, Vehicle
 
 CAR = TABLE_1_CAR
@@ -134,6 +135,19 @@ def test_a_unit_that_is_taken_for_another_one_is_named() -> None:
     (fault,) = sprung.identify(campaign.with_recordings(recordings)).faults
     assert (fault.code, fault.where) == ("unit", "travel")
     assert "in mm, not in cm" in fault.what
+
+
+@pytest.mark.slow
+def test_a_channel_that_was_converted_twice_is_named() -> None:
+    """From m/s² to g; its coupling does not show gravity."""
+    sensors = [replace(one, unit="g", high_pass=0.1) for one in default_sensors(CAR)]
+    campaign = simulated(CAR, tuple(sensors), 0.02)
+    scale = np.ones((8, 1))
+    scale[2] /= STANDARD_GRAVITY
+    recordings = [replace(one, values=scale * one.values) for one in campaign.recordings]
+    (fault,) = sprung.identify(campaign.with_recordings(recordings)).faults
+    assert (fault.code, fault.where) == ("unit", sensors[2].channel)
+    assert "were converted from m/s² to g twice" in fault.what
 
 
 @pytest.mark.slow

@@ -60,3 +60,5 @@ def _factors(sensor: Sensor) -> Iterator[tuple[float, str]]:
         factor = si_factor(stated, quantity) / si_factor(actual, quantity)
         if factor != 1.0 and (sensor.unit is not None or si in (actual, stated)):
             yield factor, f"the samples are in {actual}, not in {stated} as stated"
+    if sensor.unit is not None and (once := si_factor(sensor.unit, quantity)) != 1.0:
+        yield 1 / once, f"the samples were converted from {si} to {sensor.unit} twice"
