@@ -314,6 +314,7 @@ def test_it_is_left_out_and_named(name: str) -> None:
     ("channel", "other", "noise"),
     [("body_fl", "body_rr", 0.005), ("wheel_fl", "wheel_fr", 0.0), ("wheel_rl", "body_rl", 0.0)],
 )
+@pytest.mark.slow
 def test_a_channel_with_the_samples_of_another_one_is_left_out(channel: str, other: str, noise: float) -> None:
     result = sprung.identify(samples(copied(channel, other, noise))(CLEAN))
     (fault,) = result.faults
