@@ -326,6 +326,7 @@ def test_the_command(identified: Identified, tmp_path: Path) -> None:
     assert fleet.counts.done == 4
 
 
+@pytest.mark.slow
 def test_a_rejected_and_a_missing_campaign_are_named(tmp_path: Path) -> None:
     """The path of a campaign that does not exist is named once, though its own message names it, too."""
     campaign = simulate(TABLE_1_CAR, drops=DROPS, seed=1, duration=1.5)
