@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import ast
-import inspect
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+
+from docstrings import Docstring
 
 SOURCE = Path(__file__).resolve().parents[2] / "src" / "sprung"
 FILES = sorted(path.relative_to(SOURCE).as_posix() for path in SOURCE.rglob("*.py"))
@@ -17,14 +18,8 @@ Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 def described(docstring: str, heading: str) -> list[str] | None:
     """Return the names that are described below a heading; None without one."""
-    lines = inspect.cleandoc(docstring).splitlines()
-    underlined = [number for number, line in enumerate(lines[1:]) if line and set(line) == {"-"}]
-    begin = next((number + 2 for number in underlined if lines[number] == heading), None)
-    if begin is None:
-        return None
-    end = min((number for number in underlined if number >= begin), default=len(lines))
-    entries = [line for line in lines[begin:end] if line and not line.startswith(" ")]
-    return [name.strip().lstrip("*") for entry in entries for name in entry.partition(" : ")[0].split(",")]
+    told = Docstring.of(docstring)
+    return [*told.entries(heading)] if heading in told.sections else None
 
 
 def of_function(node: Function) -> list[str]:

@@ -69,6 +69,10 @@ def export(
     """Write the identified vehicle for another program: state space, simulation models, draws, tables."""
     with working("writing the export"):
         found: Any = sprung.load(results, series=False)
+        if output is not None and output.name in {drop.file for drop in found.drops}:
+            # Simulated recordings are files that sprung wrote, too, and might be replaced otherwise.
+            what = "the name of a recording of this campaign"
+            raise InputError([Problem(str(output), what, "a name for the export", "Choose another name.")])
         is_parquet = to == "draws" and output is not None and output.suffix == ".parquet"
         options = sprung.export.ExportOptions(
             load=load,
@@ -81,10 +85,6 @@ def export(
         )
         file = sprung.export.export(found, to, options)
         folder = results.parent if results.suffix == ".json" else results
-        if output is not None and output.name in {drop.file for drop in found.drops}:
-            # Simulated recordings are files that sprung wrote, too, and might be replaced otherwise.
-            what = "the name of a recording of this campaign"
-            raise InputError([Problem(str(output), what, "a name for the export", "Choose another name.")])
         written = file.save(folder if output is None else output, overwrite=force)
     if as_json:
         say_json({"format": to, "written": str(written), "notes": list(file.notes)})

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.batch import Row
+from sprung.batch import DONE, Row
 from sprung.display import shown
 from sprung.vehicle import DERIVED, PARAMETERS
 
@@ -156,7 +156,7 @@ def collect_estimates(rows: Iterable[Row]) -> FleetEstimates | None:
     FleetEstimates or None
         None where there is none.
     """
-    usable = [row for row in rows if row["status"] == "done" and row["coordinates"]]
+    usable = [row for row in rows if row["status"] == DONE and row["coordinates"]]
     if not usable:
         return None
     occurrences: dict[str, int] = {}

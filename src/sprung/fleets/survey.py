@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.batch import Row
+from sprung.batch import DONE, Row
 from sprung.display import shown
 from sprung.fleets.charts import ControlChart, chart_vehicles
 from sprung.fleets.estimates import FleetEstimates, collect_estimates, quantity_of
@@ -200,7 +200,7 @@ def survey_types(rows: Iterable[Row], one_type: bool = False) -> Survey:
     """
     by_name: dict[str, dict[str, list[Row]]] = {}
     for row in rows:
-        if row["status"] == "done" and row["coordinates"]:
+        if row["status"] == DONE and row["coordinates"]:
             name = ALL_VEHICLES if one_type else row["vehicle"] or "unnamed"
             part = PART_NAMES[layout_of(row["coordinates"]).model]
             by_name.setdefault(name, {}).setdefault(part, []).append(row)

@@ -211,11 +211,11 @@ def modes_of_arrays(
     elif channels is not None and len(channels) not in counts:
         problems.add("modes: channels", f"{len(channels)} names", f"{counts.pop()}, one each", "Correct the names.")
     problems.raise_if_any()
-    longest = max(decay.shape[1] for decay in decays) / (rate or 1.0)
+    assert rate is not None  # noqa: S101 (checked above; for the type checker)
+    longest = max(decay.shape[1] for decay in decays) / rate
     if start is not None and not 0 <= start < longest:
         problems.add("modes: start", f"{start:g} s", f"0 to {longest:g} s, from the first sample", "Correct the start.")
         problems.raise_if_any()
-    assert rate is not None  # noqa: S101 (checked above; for the type checker)
     begin = round((start or 0.0) * rate)
     records = [decay[:, begin:] for decay in decays]
     named = tuple(channels or (f"channel {i + 1}" for i in range(decays[0].shape[0])))

@@ -15,6 +15,7 @@ import numpy as np
 
 from sprung.analysis import identify_campaign
 from sprung.batch import (
+    DONE,
     BatchCounts,
     Row,
     Task,
@@ -188,7 +189,7 @@ def monte_carlo(
             for row in read_rows(folder, ("campaign", "status", "message", "verdict", *columns))
             if row["campaign"] in numbers
         ]
-    done = [row for row in rows if row["status"] == "done"]
+    done = [row for row in rows if row["status"] == DONE]
     return MonteCarlo(
         vehicle=true.name,
         folder=None if output is None else folder,
@@ -196,7 +197,7 @@ def monte_carlo(
         computed=summary.computed,
         parameters={name: accuracy_of(name, true.parameters[name], done) for name in names},
         verdicts={verdict: share(sum(row["verdict"] == verdict for row in done), len(done)) for verdict in VERDICTS},
-        failures={row["campaign"]: row["message"] for row in rows if row["status"] != "done"},
+        failures={row["campaign"]: row["message"] for row in rows if row["status"] != DONE},
     )
 
 
