@@ -23,7 +23,7 @@ from sprung.estimation.linear_scores import score_linear_term, score_linear_term
 from sprung.estimation.low_pass import HIGHEST_CORNER, LowPass, SampledLowPass, unexplained_squares
 from sprung.estimation.modes import UNNAMED, ModeEstimate, mode_estimates
 from sprung.estimation.monomials import parameters_from_matrices, shape_of
-from sprung.estimation.nonlinear_fit import beginning_of, fit_nonlinear, score_stepped_terms
+from sprung.estimation.nonlinear_fit import CONVERGED_IN_STEPS, beginning_of, fit_nonlinear, score_stepped_terms
 from sprung.estimation.nonlinear_scores import score_nonlinear_terms
 from sprung.estimation.overdispersion import autocorrelation_inflation
 from sprung.estimation.prediction import Prediction, predictions
@@ -48,6 +48,7 @@ from sprung.estimation.subspace import canonical_basis
 
 __all__ = [
     "CONVERGED",
+    "CONVERGED_IN_STEPS",
     "HIGHEST_CORNER",
     "MOST_STEPS",
     "NEAR",

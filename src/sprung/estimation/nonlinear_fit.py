@@ -14,7 +14,7 @@ from sprung.estimation.joint_scores import score_directions
 from sprung.estimation.linear_fit import NEAR, expected_nuisances
 from sprung.estimation.low_pass import LowPass
 from sprung.estimation.priors import Coordinates, PriorsAndConstraints, UsualValue
-from sprung.estimation.problem import CLOSE_BY, CONVERGED, EstimationProblem
+from sprung.estimation.problem import CLOSE_BY, EstimationProblem
 from sprung.estimation.statements import readout_of, statements_of
 from sprung.estimation.stuck_drops import go_on_with_likelier_states
 from sprung.estimation.time_stepping import TimeSteppingObjective
@@ -32,6 +32,11 @@ order, as friction turns round within a step, or rates behind mounts jump.
 
 _PER_DECAY, _SHORTEST = 0.5, 0.000251
 """s of a step at most over the time in which a damper behind a mount follows where it is softest; and s that are enough."""
+
+CONVERGED_IN_STEPS = 4e-3
+"""Expected gain in log-likelihood at which a fit by time stepping has converged: a tenth of a standard error, of which the
+last step leaves less. Forces are solved for to a part of their size, and a friction turns round between two steps in time, so
+the likelihood is no smoother."""
 
 _MOST_STEPS = 100
 
@@ -53,7 +58,7 @@ def fit_nonlinear(
     *,
     start: Mapping[str, float],
     states: Real,
-    enough: float = CONVERGED,
+    enough: float = CONVERGED_IN_STEPS,
     near: bool = False,
     beginning_only: bool = False,
     most: int = _MOST_STEPS,

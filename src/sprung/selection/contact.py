@@ -12,19 +12,24 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.estimation import CONVERGED, MOST_STEPS, NEAR, FitResult, fit_from_contact, fit_from_start
+from sprung.estimation import (
+    CONVERGED,
+    CONVERGED_IN_STEPS,
+    MOST_STEPS,
+    NEAR,
+    FitResult,
+    fit_from_contact,
+    fit_from_start,
+)
 from sprung.preprocess import FreeDecay
 from sprung.selection.search import ModelSearch
 from sprung.selection.starts import fit_structure
 
 Real = NDArray[np.float64]
 
-_STEPPED = 4e-3
-"""Expected gain in log-likelihood at which a fit by time stepping has converged: a tenth of a standard error, of which the
-last step leaves less. Forces are solved for to a part of their size, so the likelihood is no smoother."""
-
 _SETTLED = 0.03
-"""The same as a part of the overdispersion, of a model with errors: a sixth of a standard error."""
+"""Expected gain in log-likelihood at which a fit by time stepping has converged, as a part of the overdispersion of a model
+with errors: a sixth of a standard error."""
 
 _RINGS = 0.03
 """s for which the filter of a logger rings from what was before a landing: one of 100 Hz to less than a thousandth."""
@@ -98,7 +103,7 @@ def final_tolerance(search: ModelSearch) -> float:
     if not search.structure.is_time_stepped:
         return CONVERGED
     # Where the model has errors, statements about the vehicle move the fit again, once its overdispersion is known.
-    return _STEPPED if search.overdispersion == 1 else _SETTLED * search.overdispersion
+    return CONVERGED_IN_STEPS if search.overdispersion == 1 else _SETTLED * search.overdispersion
 
 
 def is_likelier(search: ModelSearch, other: ModelSearch) -> bool:
