@@ -22,6 +22,9 @@ Real = NDArray[np.float64]
 _ENOUGH, _MOST = 150, 4
 """Lines of each record, and records, that are enough to rank vehicles."""
 
+_FEW, _FAR_FEWER = 256, 3
+"""Lines of each record that lead a fit near its end, and how many times as many there are where a detour by them pays."""
+
 _ROUNDING = 1e-12
 """Part of the mean square of a channel below which its noise is taken for rounding."""
 
@@ -117,6 +120,12 @@ class ForcedObjective:
         energy = np.sum([one.energy for one in few], axis=0)
         sums = np.array([small.at(vehicle, weights).residual_sums.sum(axis=0) for vehicle in vehicles])
         return np.asarray(sums / np.where(energy > 0, energy, 1.0))
+
+    def of_fewer_lines(self) -> ForcedObjective | None:
+        """Return the objective of so many lines of each record that fits from usual vehicles end near those of all lines."""
+        few = tuple(one.decimated(_FEW) for one in self.lines)
+        whole, left = (sum(len(one.values) for one in lines) for lines in (self.lines, few))
+        return replace(self, transformed=few) if whole >= _FAR_FEWER * left else None
 
     def estimate_start(self, sensors: Sequence[Sensor], size: VehicleSize, given: Mapping[str, float]) -> None:
         """Return None: starts of driven vehicles are ranked."""

@@ -109,6 +109,9 @@ class JointObjective:
         """Return what vehicles leave of some of the records, to rank them as starts; (vehicle, channel)."""
         return np.asarray(np.sum([part.unexplained(vehicles, weights) for part in self.parts], axis=0))
 
+    def of_fewer_lines(self) -> None:
+        """Return None: the free decays lead near the end by themselves."""
+
     def estimate_start(
         self, sensors: Sequence[Sensor], size: VehicleSize, given: Mapping[str, float]
     ) -> dict[str, float] | None:

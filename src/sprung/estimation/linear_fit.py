@@ -158,11 +158,15 @@ def fit_linear(
     progress(Step(f"rating {len(vehicles)} usual vehicles as starts"))
     more = [coordinates.from_parameters(vehicle) for vehicle in vehicles]
     order = np.argsort(_costs_as_they_are(problem, objective, more), kind="stable")[: starts - len(ends)]
+    few = objective.of_fewer_lines()
+    rough = problem if few is None else replace(problem, objective=few)
     for number, which in enumerate(order.tolist(), start=len(ends) + 1):
         progress(Step("fitting from a start", number, starts))
-        best = min(ends, key=lambda end: problem.cost(end.point), default=None)
-        ends.append(problem.maximise(problem.priors.project(more[which]), best, enough, FAR, most))
-    return _best(problem, ends, enough)
+        best = min(ends, key=lambda end: rough.cost(end.point), default=None)
+        ends.append(
+            rough.maximise(problem.priors.project(more[which]), best, enough if few is None else NEAR, FAR, most)
+        )
+    return _best(problem, ends if few is None else _ends_in_all_lines(problem, ends, enough, most), enough)
 
 
 def expected_nuisances(known: Mapping[str, KnownValue]) -> dict[str, float]:
@@ -216,6 +220,20 @@ def _best(problem: EstimationProblem, ends: Sequence[Maximum[Iterate]], enough: 
     best = ends[int(np.argmin(costs))]
     agreeing = sum(cost - min(costs) < max(1e-3, 4 * enough) for cost in costs)
     return FitResult(problem, best.point, best.steps, best.converged, len(ends), agreeing)
+
+
+def _ends_in_all_lines(
+    problem: EstimationProblem, ends: Sequence[Maximum[Iterate]], enough: float, most: int
+) -> list[Maximum[Iterate]]:
+    """Return where fits lead from their ends in part of the records; those that ended in one point lead to one."""
+    found: dict[int, Maximum[Iterate]] = {}
+    for end in ends:
+        if id(end) not in found:
+            best = min(found.values(), key=lambda other: problem.cost(other.point), default=None)
+            at = end.point
+            onward = problem.maximise(at.u, best, enough, NEARER, most, weights=at.at.weights)
+            found[id(end)] = onward._replace(steps=end.steps + onward.steps)
+    return [found[id(end)] for end in ends]
 
 
 def _is_determined(fit: FitResult) -> bool:

@@ -78,6 +78,12 @@ class LinearObjective(Objective, Protocol):
     def with_models(self, models: Mapping[str, LinearModel], sensors: Readout) -> LinearObjective:
         """Return the objective of other models of the same records."""
 
+    def of_fewer_lines(self) -> LinearObjective | None:
+        """Return the objective of part of the records that leads fits from usual vehicles near their ends; None for none.
+
+        It is to cost far less. Where the objective itself costs little, there is none.
+        """
+
     def unexplained(self, vehicles: Real, weights: Real) -> Real:
         """Return what vehicles leave of some of the records, to rank them as starts.
 
