@@ -29,6 +29,7 @@ def result() -> Result:
     return sprung.identify(campaign, extras="rebound", tracks="shared", fall=False)
 
 
+@pytest.mark.slow
 def test_the_curves_are_true_within_their_standard_errors(result: Result) -> None:
     assert list(result.curves) == ["damper_front", "damper_rear"]
     for name, curve in result.curves.items():

@@ -326,6 +326,7 @@ def test_total_mass_with_the_load_in_it(recorded: Campaign) -> None:
     assert "Correct total_mass" in fault.do
 
 
+@pytest.mark.slow
 def test_places_of_the_load_measured_from_the_rear_axle(recorded: Campaign) -> None:
     items = tuple(
         replace(one, position=(one.position[0] + LENGTH, *one.position[1:]))

@@ -48,6 +48,7 @@ def scaled(campaign: sprung.Campaign, channel: int, factor: float) -> sprung.Cam
     )
 
 
+@pytest.mark.slow
 def test_a_nonlinear_term_that_explains_more_than_a_fault_comes_first() -> None:
     """Tyres that stiffen seemed to be a brake in the drop from all four wheels."""
     stiffening = TABLE_1_CAR.with_values(h_tf=5.0, h_tr=5.0)
@@ -124,6 +125,7 @@ def test_requested_terms_are_fitted_and_no_others_tried(campaign: sprung.Campaig
     assert not [step for step in run.trace if step.stage.startswith("select") and "scored" in step.what]
 
 
+@pytest.mark.slow
 def test_faults_are_looked_for_once_in_a_misfit_of_which_none_explains_any() -> None:
     """Friction is no fault: while most of what it does is left, no other fit of springs and dampers shows one either."""
     first = with_friction("isolate_evident_faults")

@@ -114,6 +114,7 @@ def test_the_limits_of_a_recording_are_moved(user: Tabs, file: Path) -> None:
     assert document["drop"][0]["end"] == end
 
 
+@pytest.mark.slow
 def test_two_tabs_do_not_overwrite_each_other(user: Tabs, file: Path) -> None:
     first, second = user.open(PAGE), user.open(PAGE)
     first.fill("[id='vehicle.wheelbase.value']", "2,56")

@@ -37,6 +37,7 @@ def test_every_kind_is_tested_in_many_ways() -> None:
     assert 0.15 < max(ballast) < 0.25
 
 
+@pytest.mark.slow
 def test_the_recordings_are_those_that_the_test_says() -> None:
     (campaign, _) = record([draw_other_test(10)])[0]  # 400 Hz, 6.3 s, not weighed
     recording = campaign.recordings[0]
@@ -45,6 +46,7 @@ def test_the_recordings_are_those_that_the_test_says() -> None:
     assert recording.values[:4, :150].std(axis=1) == pytest.approx(0.034, rel=0.35)
 
 
+@pytest.mark.slow
 def test_the_page_names_what_was_not_right(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     test = draw_other_test(0)
     errors = {"m_s": (0.01, 1.0, True), "k_tf": (-0.05, -5.0, False)}
@@ -59,6 +61,7 @@ def test_the_page_names_what_was_not_right(tmp_path: Path, monkeypatch: pytest.M
     assert "| plain | 1 | 1 / 0 / 0 / 0 | 0 |" in (tmp_path / "real-car-tests.md").read_text(encoding="utf-8")
 
 
+@pytest.mark.slow
 def test_wheels_that_seem_to_be_nowhere_are_looked_for_from_an_ordinary_vehicle() -> None:
     """Without roll drops the fit ended with a rear half-distance of 4 cm; the front one was 15 standard errors off."""
     outcome = identified(117)

@@ -149,6 +149,7 @@ def test_a_tall_car_is_identified_whose_body_turns_by_finite_angles() -> None:
         assert result.parameters[name].value == pytest.approx(value, rel=2e-3), name
 
 
+@pytest.mark.slow
 def test_finite_rotation_shows_beside_noise() -> None:
     """It gains 185 and one Newton step from the other geometry promised a loss: the pitch inertia was 3.1 errors off."""
     ((campaign, truth),) = record([replace(draw_test("tall", 511), noise=0.1, duration=2.0)])

@@ -71,6 +71,7 @@ def test_single_mishaps_are_no_vehicle() -> None:
 
 
 @pytest.mark.parametrize("number", range(len(REAL)))
+@pytest.mark.slow
 def test_what_a_model_lacks_divides_nothing(number: int) -> None:
     """Levelled air springs are others with each load; a knee shows more in some drops than in others."""
     assert divide_drops(linear(real_campaigns()[number])) is None
@@ -91,6 +92,7 @@ def test_recordings_of_two_vehicles_are_rejected_and_told_apart() -> None:
     assert [step.what for step in run.trace].count("no term is tried") == 3
 
 
+@pytest.mark.slow
 def test_a_requested_model_is_fitted_all_the_same() -> None:
     campaign, _ = mixed((1, 3, 5, 7, 9))
     result = sprung.identify(campaign, extras=["anti-roll"])

@@ -12,6 +12,7 @@ from tall_car import HEIGHTS, TALL_CAR, campaign_in
 
 
 @pytest.mark.parametrize("heights", [None, HEIGHTS])
+@pytest.mark.slow
 def test_the_parameters_of_a_tall_car_hold(heights: Heights | None, tmp_path: Path) -> None:
     """Without the second order, its drops disagree so much that variances grow tenfold, and estimates are off by up to 6 %.
 

@@ -174,6 +174,7 @@ def test_contradictory_choices_of_the_model_are_refused_together() -> None:
     assert "frction" in text
 
 
+@pytest.mark.slow
 def test_friction_is_selected() -> None:
     """The simplest campaign with friction: identify(simulate(p)) = p within five standard errors."""
     car = Vehicle.from_parameters(TABLE_1_CAR.parameters | {"F_f": 90.0, "F_r": 70.0, "s_f": 25e4, "s_r": 25e4})

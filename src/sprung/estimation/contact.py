@@ -65,7 +65,8 @@ def fit_from_contact(
     first
         The fit of these decays.
     again
-        Fits decays that begin elsewhere: from a fit and the {X, Ẋ} that it has where they begin, (drop, state).
+        Fits decays that begin elsewhere: from a fit and the {X, Ẋ} that it has where they begin, (drop, state). Counts the
+        steps of that fit.
 
     Returns
     -------
@@ -131,7 +132,7 @@ def fit_from_start(
         before = max(-shift, 0)
         states[drop] = fit.motion(drop, before, max(min(shift + 1, decay.samples), 1))[:, 0 if before else -1]
     moved = _shifted(decays, shifts)
-    return moved, again(moved, fit, states).after(fit)
+    return moved, again(moved, fit, states)
 
 
 def _shifted(decays: Sequence[FreeDecay], shifts: Sequence[int]) -> tuple[FreeDecay, ...]:

@@ -60,7 +60,7 @@ def from_contact(search: ModelSearch, most: int = MOST_STEPS, on_the_way: bool =
     if moved is not search:
         return moved
     fit = _refit(search, enough, most, search.decays, search.fit, search.fit.states)
-    return replace(search, decays=tuple(search.decays), fit=fit.after(search.fit))
+    return replace(search, decays=tuple(search.decays), fit=fit)
 
 
 def without_landings(search: ModelSearch) -> ModelSearch:

@@ -109,12 +109,14 @@ def select_further_terms(search: ModelSearch, whole: bool) -> ModelSearch:
                 break
         if search.structure is before.structure:
             search = _accept_unscored(search, tried, with_parts=not whole and search.lacks_something)
-        has_moved = search.fit is not before.fit
-        explains_much = has_moved and not before.leaves_misfit(search.fit, _MUCH_LEFT)
+        is_another = search.structure != before.structure
+        # Decays that only begin some samples later may leave less of what was much, and always a little less of little.
+        may_explain = is_another or before.leaves_misfit(before.fit, _MUCH_LEFT)
+        explains_much = may_explain and not before.leaves_misfit(search.fit, _MUCH_LEFT)
         if explains_much or _hidden(search.structure.terms) != _hidden(before.structure.terms):
             # What was refused without it may be needed beside it.
             tried = frozenset()
-        if not has_moved:
+        if not (is_another or explains_much):
             break
     return search
 
