@@ -108,6 +108,9 @@ def _searches(
     if search.is_misfit_large:
         yield partial(_with_law_of_dampers, search, plain)
         yield partial(_with_usual_terms, search, plain)
+        # Beside linear terms that are no usual ones, an anti-roll bar say, and without rubber that may lead astray.
+        friction = [term for term in found.open_terms if TERMS[term].resembles_others and term not in found.terms]
+        yield partial(_with_law_of_dampers, search, found.with_terms((*found.terms, *friction)))
     if ranked and not (is_plain or has_part):
         yield partial(_from_base, search, ranked)
     # A linear fit that has gone astray for the sake of friction, small motions' friction above all, shows no score of it.
@@ -143,12 +146,12 @@ def _with_usual_terms(base: ModelSearch, plain: ModelStructure, so_far: ModelSea
     return select_from_ordinary_vehicle(replace(base, steps=so_far.steps), plain)
 
 
-def _with_law_of_dampers(base: ModelSearch, plain: ModelStructure, so_far: ModelSearch) -> ModelSearch:
+def _with_law_of_dampers(base: ModelSearch, beside: ModelStructure, so_far: ModelSearch) -> ModelSearch:
     """Add the whole law of the dampers: each part of it alone shows little of what the others make."""
-    law = [term for term in plain.open_terms if term in DAMPER_LAW and term not in plain.terms]
+    law = [term for term in beside.open_terms if term in DAMPER_LAW and term not in beside.terms]
     if len(law) < len(DAMPER_LAW):
         return so_far
-    return select_beside_usual_terms(replace(base, steps=so_far.steps), plain.with_terms((*plain.terms, *law)))
+    return select_beside_usual_terms(replace(base, steps=so_far.steps), beside.with_terms((*beside.terms, *law)))
 
 
 def _refused_parts(search: ModelSearch) -> list[str]:
@@ -200,7 +203,7 @@ def _from_likeliest_beginning(bases: Sequence[ModelSearch], terms: Sequence[str]
     best = search
     for likeliest, base, others in sorted(first, key=lambda one: -one[0].fit.loglikelihood)[:_BASES]:
         ends = [likeliest, *(_with_first_steps(base, term) for term in others)]
-        start = max(ends, key=lambda one: one.fit.loglikelihood)
+        start = _or_from_ordinary_vehicle(search, max(ends, key=lambda one: one.fit.loglikelihood))
         if search.leaves_misfit(start.fit, MISFIT_LEFT_AT_FIRST):
             break
         found = _select_from_start(replace(search, steps=best.steps), start)
@@ -222,6 +225,16 @@ def _select_from_start(search: ModelSearch, start: ModelSearch) -> ModelSearch:
         found = replace(anew, decays=found.decays)
     found = found.recorded({term: found.wald_gain(term) for term in found.selected}, True, True)
     return select_terms_in_whole(found, search.decays)
+
+
+def _or_from_ordinary_vehicle(search: ModelSearch, start: ModelSearch) -> ModelSearch:
+    """Return the likelier one of the first steps with some terms and of those from an ordinary vehicle that has them.
+
+    A linear vehicle that had to make up for what is missing may be one from which no step leads back.
+    """
+    ordinary = fit_usual_terms(search, start.structure)
+    ends = [start] if ordinary is None else [start, ordinary]
+    return max(ends, key=lambda one: one.fit.loglikelihood)
 
 
 def _with_first_steps(search: ModelSearch, term: str) -> ModelSearch:
