@@ -104,7 +104,7 @@ def select_further_terms(search: ModelSearch, whole: bool) -> ModelSearch:
             # What a wheel does that is still in the air would hide what shows in no score.
             search = without_landings(search)
             untried = _untried(search, tried)
-            search = _accept_low_pass(search, _rivals(untried), _hidden(untried))
+            search = _accept_low_pass(search, _rivals(untried), _hidden(untried), _usual(untried))
             if search.structure is before.structure and not search.is_overdispersed:
                 break
         if search.structure is before.structure:
@@ -162,7 +162,7 @@ def _accept_rival(search: ModelSearch, terms: Sequence[str], least: float = 0.0)
 def _accept_unscored(search: ModelSearch, tried: Collection[str], with_parts: bool) -> ModelSearch:
     """Accept what no score shows: a term among those that refine the same, a friction, or a part that vibrates by itself."""
     # What the likeliest of each kind beats may be needed beside it: it is tried again in the next round.
-    for kind in (_rivals, _hidden, *([_parts] if with_parts else [])):
+    for kind in (_usual, _rivals, _hidden, *([_parts] if with_parts else [])):
         found = _accept_rival(search, kind(_untried(search, tried)))
         if found.structure is not search.structure:
             return found
@@ -186,6 +186,11 @@ def _accept_low_pass(search: ModelSearch, *rivals: Sequence[str]) -> ModelSearch
 def _hidden(terms: Sequence[str]) -> list[str]:
     """Return the terms that show in no score once a fit of everything at once has lost them, but when the rest is right."""
     return [term for term in terms if TERMS[term].resembles_others]
+
+
+def _usual(terms: Sequence[str]) -> list[str]:
+    """Return the linear terms that most vehicles have: beside curves that make up for them their scores show little of them."""
+    return [term for term in terms if TERMS[term].is_linear and TERMS[term].usual is not None]
 
 
 def _parts(terms: Sequence[str]) -> list[str]:
