@@ -153,6 +153,7 @@ def test_a_sensor_stated_elsewhere_on_pads_is_named_and_corrected() -> None:
         ("anti-roll", {"k_af": 8e3, "k_ar": 5e3}),
     ],
 )
+@pytest.mark.slow
 def test_what_a_model_lacks_on_pads_blames_no_sensor(term: str, values: Mapping[str, float]) -> None:
     campaign = sprung.simulate(TABLE_1_CAR.with_values(**values), drops=[PADS], noise=NOISE, seed=2, pads=SHORT)
     result = sprung.identify(campaign)

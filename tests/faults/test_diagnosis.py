@@ -337,6 +337,7 @@ def test_a_load_that_lies_elsewhere_is_named_and_doubted() -> None:
     assert reason(result.faults[0]) in result.verdict.reasons
 
 
+@pytest.mark.slow
 def test_a_body_that_twists_is_named() -> None:
     result = sprung.identify(twisted(CLEAN))
     assert said(result) == [("twist", "body")]

@@ -40,6 +40,7 @@ def test_exchanged_masses_of_the_axles_are_put_right() -> None:
     ],
     ids=["axles", "rate far off", "rate near by"],
 )
+@pytest.mark.slow
 def test_of_two_that_contradict_each_other_none_is_used(stated: dict[str, float]) -> None:
     """Either one scales the whole vehicle: with one of them, all masses and rates may be wrong, and ratios are right."""
     result = identified(**stated)

@@ -141,6 +141,7 @@ def test_coverage_of_the_estimates(count: int, fleets: int) -> None:
     assert 0.93 < np.mean(covered) < 0.97
 
 
+@pytest.mark.slow
 def test_coverage_of_parameters_whose_spread_no_test_resolves() -> None:
     """Over many fleets each parameter has its coverage, though a single fleet may take its spread for too little."""
     random = np.random.default_rng(11)

@@ -139,6 +139,7 @@ def test_the_sampling_rate_tells_little_where_the_noise_has_a_density() -> None:
 
 @settings(max_examples=4, deadline=None)
 @given(vehicles)
+@pytest.mark.slow
 def test_more_never_tells_less(vehicle: Vehicle) -> None:
     plan = sprung.plan(vehicle, known={"total_mass": vehicle.total_mass}, noise=0.1)
     own = percents(plan, "as planned")
