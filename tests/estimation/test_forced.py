@@ -205,7 +205,7 @@ def test_a_joint_fit_is_better_than_either() -> None:
 
 
 def test_a_detour_by_fewer_lines_ends_where_all_lines_lead() -> None:
-    """Records of a minute, looked through at a fifth of their lines, end at the optimum of all of them."""
+    """Records of a minute, looked through at a sixth of their lines, end at the optimum of all of them."""
     drops = [{"excitation": "pads", "load": "bags"}]
     motion = PadMotion("random", duration=60.0)
     campaign = simulate(TABLE_1_CAR, drops=drops, loads=[LOAD], noise=NOISE, rate=200, pads=motion, seed=3)

@@ -21,7 +21,7 @@ from sprung.selection.from_ordinary_vehicle import (
 from sprung.selection.further_terms import select_further_terms, select_terms_beside, select_terms_in_whole
 from sprung.selection.linear_terms import FLEXIBLE_BODIES
 from sprung.selection.nonlinear_terms import DAMPER_LAW
-from sprung.selection.ordinary_vehicle import fit_usual_terms
+from sprung.selection.ordinary_vehicle import fit_usual_terms, likeliest_or_ordinary
 from sprung.selection.scoring import score_terms
 from sprung.selection.search import ModelSearch
 from sprung.selection.stepwise import rank_terms, try_likeliest
@@ -203,7 +203,8 @@ def _from_likeliest_beginning(bases: Sequence[ModelSearch], terms: Sequence[str]
     best = search
     for likeliest, base, others in sorted(first, key=lambda one: -one[0].fit.loglikelihood)[:_BASES]:
         ends = [likeliest, *(_with_first_steps(base, term) for term in others)]
-        start = _or_from_ordinary_vehicle(search, max(ends, key=lambda one: one.fit.loglikelihood))
+        start = max(ends, key=lambda one: one.fit.loglikelihood)
+        start = likeliest_or_ordinary(search, [start], start.structure)
         if search.leaves_misfit(start.fit, MISFIT_LEFT_AT_FIRST):
             break
         found = _select_from_start(replace(search, steps=best.steps), start)
@@ -225,16 +226,6 @@ def _select_from_start(search: ModelSearch, start: ModelSearch) -> ModelSearch:
         found = replace(anew, decays=found.decays)
     found = found.recorded({term: found.wald_gain(term) for term in found.selected}, True, True)
     return select_terms_in_whole(found, search.decays)
-
-
-def _or_from_ordinary_vehicle(search: ModelSearch, start: ModelSearch) -> ModelSearch:
-    """Return the likelier one of the first steps with some terms and of those from an ordinary vehicle that has them.
-
-    A linear vehicle that had to make up for what is missing may be one from which no step leads back.
-    """
-    ordinary = fit_usual_terms(search, start.structure)
-    ends = [start] if ordinary is None else [start, ordinary]
-    return max(ends, key=lambda one: one.fit.loglikelihood)
 
 
 def _with_first_steps(search: ModelSearch, term: str) -> ModelSearch:

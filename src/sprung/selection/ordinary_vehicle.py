@@ -6,7 +6,7 @@ that is missing is found.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 
 from sprung.estimation import NEAR, UsualValue, VehicleSize, fit_linear, usual_vehicle
@@ -242,6 +242,28 @@ def or_from_ordinary_vehicle(search: ModelSearch) -> ModelSearch:
     other = _refit_from_usual_values(search) if is_stepped else fit_from_ordinary_vehicle(search, search.structure)
     enough = 0.0 if is_ordinary(other) and not is_ordinary(search) else search.required_of_switch
     return other if other.fit.converged and other.gain_over(search) > enough else search
+
+
+def likeliest_or_ordinary(search: ModelSearch, ends: Sequence[ModelSearch], structure: ModelStructure) -> ModelSearch:
+    """Return the likeliest of some fits of a nonlinear structure and of that from an ordinary vehicle with its terms.
+
+    A linear vehicle that had to make up for what is missing may be one from which no step leads back.
+
+    Parameters
+    ----------
+    search
+        The model so far and its fit.
+    ends
+        Fits that began from it.
+    structure
+        Their model.
+
+    Returns
+    -------
+    ModelSearch
+    """
+    ordinary = fit_usual_terms(search, structure)
+    return max(ends if ordinary is None else [*ends, ordinary], key=lambda end: end.fit.loglikelihood)
 
 
 def _refit_from_usual_values(search: ModelSearch) -> ModelSearch:

@@ -17,8 +17,8 @@ from sprung.selection.linear_terms import ENGINE
 from sprung.selection.ordinary_vehicle import (
     ITERATIONS,
     fit_from_ordinary_vehicle,
-    fit_usual_terms,
     is_ordinary,
+    likeliest_or_ordinary,
     ordinary_vehicle,
     with_usual_scale,
 )
@@ -82,9 +82,7 @@ def fit_forced_terms(search: ModelSearch, requested: ModelStructure) -> ModelSea
     if search.has_model_error:
         begins = (search, _begin_with_held_wheels(search, larger))
         tried = [begin.refit(larger, _FIRST_ITERATIONS, beginning_only=True) for begin in begins]
-        ordinary = fit_usual_terms(search, larger)
-        ends = tried if ordinary is None else [*tried, ordinary]
-        search = max(ends, key=lambda end: end.fit.loglikelihood)
+        search = likeliest_or_ordinary(search, tried, larger)
     return select_gravity_leakage(search.refit(larger))
 
 
