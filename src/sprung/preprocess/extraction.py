@@ -17,6 +17,7 @@ from sprung.preprocess.high_pass import integrate_from_rest
 from sprung.preprocess.landing import Landing, detect_landing, measure_suspension_force
 from sprung.preprocess.passage import check_speed
 from sprung.preprocess.release import Release, unknown_release
+from sprung.preprocess.wheel_height import detect_contact
 from sprung.units import STANDARD_GRAVITY
 from sprung.vehicle import STATIONS, Wheel
 
@@ -43,6 +44,8 @@ _NEAR_END = 2.0
 _ALLOWED_FOR = (
     "a fall and two periods of wheel hop after the release, as the sensors do not tell when every wheel has landed"
 )
+
+_BY_HEIGHTS = "every wheel is as low as only one that has landed is"
 
 _NOT_PLACED = (
     "a fall and two periods of wheel hop after the release, as the landing follows from the positions of the body sensors, "
@@ -186,24 +189,39 @@ def _find_start(
     landing = detect_landing(
         recording.values, recording.rate, release, campaign.sensors, suspension, drop.wheels, wheelbase
     )
-    if landing is None:
-        placed = all(sensor.position is not None for sensor in campaign.sensors if sensor.needs_position)
-        landing = Landing(possible, typical, _ALLOWED_FOR if placed else _NOT_PLACED)
     watched = {
         sensor.wheel
         for sensor, used in zip(campaign.sensors, recording.usable, strict=True)
         if used and sensor.reads_gravity
     }
-    if not watched.issuperset(drop.wheels):  # a wheel without a usable sensor fell too
-        why = _ALLOWED_FOR if typical > landing.certain else landing.why
-        later = max(landing.possible, possible if landing.landed is None else usual), max(landing.certain, typical)
-        landing = landing._replace(possible=later[0], certain=later[1], why=why)
+    if landing is None or not watched.issuperset(drop.wheels):  # a wheel without a usable sensor fell too
+        certain, why = typical, _ALLOWED_FOR
+        if landing is None and not all(one.position is not None for one in campaign.sensors if one.needs_position):
+            why = _NOT_PLACED
+        contact = detect_contact(
+            recording.values, recording.rate, release, campaign.sensors, drop.wheels, drop.height, typical
+        )
+        if contact is not None:
+            certain, why = contact, _BY_HEIGHTS
+        landing = _later_of(landing, Landing(min(possible, certain), certain, why), usual)
     at_landing = np.flatnonzero(clipped[:, : release.sample + int(_CLIPPED * recording.rate)].any(axis=0))
     after = int(at_landing[-1]) + 1 if at_landing.size else 0
     if after > landing.certain:
         over = [name for name, samples in zip(recording.channels, clipped, strict=True) if samples[after - 1]]
         landing = landing._replace(why=f"until then {', '.join(over)} clipped")
     return landing._replace(possible=max(landing.possible, after), certain=max(landing.certain, after))
+
+
+def _later_of(landing: Landing | None, allowed: Landing, usual: int) -> Landing:
+    """Return a landing of some wheels, no earlier than what is allowed for the others; these land by the usual fall, too."""
+    if landing is None:
+        return allowed
+    possible = allowed.possible if landing.landed is None else min(usual, allowed.certain)
+    return landing._replace(
+        possible=max(landing.possible, possible),
+        certain=max(landing.certain, allowed.certain),
+        why=allowed.why if allowed.certain > landing.certain else landing.why,
+    )
 
 
 def find_stated_start(drop: DropTest) -> int:
