@@ -150,12 +150,17 @@ def _suspected_sensor(search: ModelSearch) -> tuple[Fault, ...]:
     """Return the sensor that a fit takes furthest from what is stated of it, as a fault, if it is far.
 
     Where a model is followed step by step or in the frequency domain, which of several sensors is at fault is not isolated,
-    and what is stated is not corrected. A model that leaves much takes healthy sensors anywhere.
+    and what is stated is not corrected. A model that leaves much takes healthy sensors anywhere, and so does one that has to
+    agree with a wrong mass.
     """
     if search.has_model_error:
         return ()
     ratio, channel, quantity = furthest_from_stated(search)
     if abs(ratio) < FAR:
+        return ()
+    # What is stated of the vehicle and its loads may be wrong instead, as the verdict then says.
+    contradicted = search.fit.problem.conflicts(search.fit.iterate, search.fit.overdispersion)
+    if max(contradicted.values(), default=0.0) > abs(ratio):
         return ()
     what = _IN_WORDS[quantity]
     text = f"the fit takes its {what} {abs(ratio):.0f} times as far from what is stated as its standard uncertainty"
@@ -232,9 +237,19 @@ def _with_base(run: Analysis, consistency: Consistency) -> tuple[Analysis, Candi
                 return run, replace(base, whole=whole)
             if SEPARATE_TRACKS not in needed_terms(ModelSearch(larger, base.fit, decays)):
                 larger = linear
+        # A vehicle that is wrong may seem to be on the ground before it is: no hypothesis explains what it does in the air.
+        decays = _begun_no_earlier(run.decays, run.prepared.decays)
+        if any(other is not decay for other, decay in zip(decays, run.decays, strict=True)):
+            return replace(run, fits=run.fits + 1), _fit_of(larger, decays, run.fit)
     if larger.names == structure.names:
         return run, CandidateFit.of(structure, run.decays, run.fit)
     return replace(run, fits=run.fits + 1), _fit_of(larger, run.decays, run.fit)
+
+
+def _begun_no_earlier(decays: Sequence[FreeDecay], prepared: Sequence[FreeDecay]) -> tuple[FreeDecay, ...]:
+    """Let decays of drops begin no earlier than the recordings alone show every tyre to be on the ground."""
+    later = [0 if decay.is_driven else decay.samples_to(one.start) for decay, one in zip(decays, prepared, strict=True)]
+    return tuple(decay.shifted(shift) if shift > 0 else decay for decay, shift in zip(decays, later, strict=True))
 
 
 def _fit_of(structure: ModelStructure, decays: Sequence[FreeDecay], before: FitResult) -> CandidateFit:

@@ -27,6 +27,7 @@ from sprung.selection import (
     leave_out_unneeded,
     may_be_astray,
     or_from_ordinary_vehicle,
+    or_with_usual_linear_terms,
     select_flexible_body,
     try_term,
     with_short_steps,
@@ -65,7 +66,7 @@ def select_linear_terms(run: Analysis, progress: Progress) -> Analysis:
     before = run.model
     if run.refuting:
         return run.noted("select_linear_terms", *_NO_TERM)
-    search = _rigid_or_flexible(run, replace(before, progress=progress))
+    search = or_with_usual_linear_terms(_rigid_or_flexible(run, replace(before, progress=progress)))
     if search.structure.names != before.structure.names:
         # The fit has moved since a term was accepted: it may speak against it now, and what it explained be another one's.
         moved = from_contact(search)

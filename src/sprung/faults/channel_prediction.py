@@ -119,15 +119,34 @@ class ChannelPrediction:
         """What the channel reads over what it should."""
         return float(self.record @ self.stated) / max(float(self.stated @ self.stated), np.finfo(float).tiny)
 
-    def gravity_allows(self, gain: float) -> bool:
-        """Whether the reading at rest agrees with a gain: a sensor that shows gravity shows it with the same gain."""
-        if not self.sensor.reads_gravity:
-            return True
-        levels = [decay.rest.level[self.channel] for decay in self.decays]
-        level = float(np.median(levels)) / STANDARD_GRAVITY
-        if not np.isfinite(level) or abs(level) < _OFFSET * abs(gain):  # AC-coupled, zeroed at rest, or no rest
-            return True
-        return abs(gain - level) < _OFFSET * max(abs(gain), 1.0)
+    def rest_allows(self, gain: float) -> bool:
+        """Whether what it reads while the vehicle stands agrees with a gain.
+
+        A sensor that shows gravity shows it with the same gain, and a displacement by how much the vehicle is lower in the end
+        than on blocks of a stated height.
+        """
+        shown = self._shown_at_rest
+        if not np.isfinite(shown) or (self.sensor.reads_gravity and abs(shown) < _OFFSET * abs(gain)):
+            return True  # AC-coupled, zeroed at rest, or no rest
+        return abs(gain - shown) < _OFFSET * max(abs(gain), 1.0)
+
+    @cached_property
+    def _shown_at_rest(self) -> float:
+        """The gain that the reading at rest shows; NaN where it shows none."""
+        if self.sensor.reads_gravity:
+            return float(np.median([decay.rest.level[self.channel] for decay in self.decays])) / STANDARD_GRAVITY
+        if self.sensor.quantity != "displacement" or self.sensor.relative_to is not None or self.sensor.on is None:
+            return np.nan
+        drops = {drop.recording.name: drop for drop in self.candidate.campaign.drops}
+        every = self.candidate.campaign.layout.wheels
+        gains = []
+        for decay in self.decays:
+            drop = drops[decay.file]
+            needed = every if self.sensor.on == "body" else (self.sensor.wheel,)
+            if drop.excitation == "drop" and drop.height and {*needed} <= {*drop.wheels}:
+                end = decay.values[self.channel, -max(int(DRIFT_SPAN * decay.rate), 1) :].mean()
+                gains.append(float(decay.rest.level[self.channel] - end) / drop.height)
+        return float(np.median(gains)) if gains else np.nan
 
     def delayed_motion(self, delay: float) -> tuple[Real, Real]:
         """Return the motion that a channel with a delay, s, shows, and its rate; shape (coordinate, sample) each."""

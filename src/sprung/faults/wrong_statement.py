@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from sprung.faults.campaign.known_quantity import known_quantities, none_of, restated
 from sprung.faults.campaign.load_frame import load_frames
+from sprung.faults.campaign.loosened_statement import loosened_statements, with_found_value
 from sprung.faults.candidate_fit import CandidateFit
 from sprung.faults.consistency import SHARE, SIGNIFICANT
 from sprung.faults.hypothesis import Hypothesis
@@ -37,7 +38,7 @@ def wrong_statement(base: CandidateFit) -> tuple[Hypothesis | None, int]:
     promising = sorted(
         (
             hypothesis
-            for hypothesis in (*load_frames(base), *known_quantities(base))
+            for hypothesis in (*load_frames(base), *known_quantities(base), *loosened_statements(base))
             if _leaves_little(base, hypothesis, SHARE) and base.table.cost - hypothesis.table.cost > SIGNIFICANT
         ),
         key=lambda hypothesis: hypothesis.score(),
@@ -48,7 +49,7 @@ def wrong_statement(base: CandidateFit) -> tuple[Hypothesis | None, int]:
     best, alike = confirmed[0], SIGNIFICANT * confirmed[0].candidate.fit.overdispersion
     rivals = [one for one in confirmed[1:] if one.free <= best.free and one.score() - best.score() < alike]
     if not rivals:
-        return restated(base, best), len(promising)
+        return with_found_value(base, restated(base, best)), len(promising)
     none = none_of(base, [best, *rivals])
     if none is None:
         return None, len(promising)

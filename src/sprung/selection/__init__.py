@@ -8,9 +8,13 @@ from sprung.selection.backward_elimination import (
 )
 from sprung.selection.contact import begin_no_later, final_tolerance, from_contact, is_likelier
 from sprung.selection.description import TermDescription, describe_terms
-from sprung.selection.error_budget import FALSE_ALARM_SHARE, required_gain
+from sprung.selection.error_budget import FALSE_ALARM_SHARE, OVERDISPERSED, required_gain
 from sprung.selection.finite_rotation import REQUIRED_OF_ROTATION, select_finite_rotation
-from sprung.selection.from_ordinary_vehicle import fit_flexible_bodies, select_flexible_body
+from sprung.selection.from_ordinary_vehicle import (
+    fit_flexible_bodies,
+    or_with_usual_linear_terms,
+    select_flexible_body,
+)
 from sprung.selection.linear_terms import ENGINE, FLEXIBLE_BODIES, SEPARATE_TRACKS, STARTED_LATER
 from sprung.selection.low_pass import confirm_low_pass, corner_of, select_low_pass
 from sprung.selection.model_term import ModelTerm
@@ -47,6 +51,7 @@ __all__ = [
     "FALSE_ALARM_SHARE",
     "FAR",
     "FLEXIBLE_BODIES",
+    "OVERDISPERSED",
     "REQUIRED_OF_ROTATION",
     "SEPARATE_TRACKS",
     "STARTED_LATER",
@@ -83,6 +88,7 @@ __all__ = [
     "may_be_astray",
     "needed_terms",
     "or_from_ordinary_vehicle",
+    "or_with_usual_linear_terms",
     "required_gain",
     "score_terms",
     "select_finite_rotation",

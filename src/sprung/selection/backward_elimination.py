@@ -118,8 +118,9 @@ def leave_out_unneeded(
         What would be lost without each of the terms that are left; empty where that is the model before.
     """
     gains: dict[str, float] = {}
+    kept = {keep}
     while tried.structure.names != before.structure.names:
-        against = {term: tried.veto(term) for term in tried.selected if term != keep}
+        against = {term: tried.veto(term) for term in tried.selected if term not in kept}
         if not against:
             break
         # What is not determined beside a term that is not needed may be so without it: its turn comes last.
@@ -137,10 +138,14 @@ def leave_out_unneeded(
             if (held := hold_undetermined(tried, least, undetermined[least])) is not None:
                 tried = tried.refit(held)
                 continue
-        tried = tried.recorded({least: gains[least]}, True, False, against[least])
+        larger, tried = tried, tried.recorded({least: gains[least]}, True, False, against[least])
         smaller = _with_counterpart(tried, least)
         tried = _back_to(before, tried, least) if smaller.names == before.structure.names else tried.refit(smaller)
         if least in before.selected and tried.delta_bic(before) < 0:
+            if not against[least] and larger.gain_over(tried) > larger.required(least):
+                # A Wald test says little of what a fit without the term loses where the term is not known well.
+                tried, kept = larger, {*kept, least}
+                continue
             # A new term beside which an old one means nothing does not replace it unless it explains as much.
             return replace(before, steps=tried.steps), {}
     return tried, {}

@@ -12,7 +12,7 @@ from dataclasses import replace
 
 from sprung.progress import Step
 from sprung.selection.backward_elimination import hold_undetermined, leave_out_unneeded
-from sprung.selection.contact import from_contact
+from sprung.selection.contact import from_contact, is_likelier
 from sprung.selection.error_budget import MISFIT_LEFT
 from sprung.selection.evident_faults import with_evident_fault
 from sprung.selection.further_terms import select_terms_beside
@@ -70,6 +70,35 @@ def select_flexible_body(search: ModelSearch) -> ModelSearch:
             search = search.recorded({term: gain}, True, False, "an ordinary vehicle with it explains no more")
         bodies = partly
     return search
+
+
+def or_with_usual_linear_terms(search: ModelSearch) -> ModelSearch:
+    """Return the search with the usual linear terms that are needed, where all of them together explain what it leaves.
+
+    Rubber in different places and tyres that damp hide each other: each alone leaves what is no more like noise than before.
+
+    Parameters
+    ----------
+    search
+        Once the linear terms are decided one after the other.
+
+    Returns
+    -------
+    ModelSearch
+        As given where it leaves noise alone, or they leave more.
+    """
+    usual = [term for term in _usual_terms(search.structure) if TERMS[term].is_linear and not TERMS[term].refines]
+    if not usual or not search.is_overdispersed:
+        return search
+    search.progress(Step(f"fitting an ordinary vehicle with {', '.join(usual)}"))
+    tried = fit_from_ordinary_vehicle(search, search.with_terms(usual))
+    if search.leaves_misfit(tried.fit, MISFIT_LEFT):
+        return search
+    tried = from_contact(tried)
+    if tried.is_overdispersed or not is_likelier(tried, search):
+        return search
+    needed, gains = leave_out_unneeded(tried, search)
+    return from_contact(needed.recorded(gains, True, True)) if gains else search
 
 
 def _usual_terms(structure: ModelStructure) -> tuple[str, ...]:

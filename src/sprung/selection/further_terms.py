@@ -134,11 +134,12 @@ def _try_scored(search: ModelSearch, tried: Collection[str]) -> tuple[ModelSearc
         if not search.is_overdispersed:
             # Scores of a part of the decays hold for all of them if they are more than chance: a step in all of them tells.
             stepped, gain = take_first_step(search, term)
-            against = stepped.veto(term) if stepped.fit.converged else ""
+            is_converged = stepped is not search and stepped.fit.converged
+            against = stepped.veto(term) if is_converged else ""
             if against or gain < search.required(term):
                 search, fitted = search.recorded({term: gain}, bool(against), False, against), [*fitted, term]
                 continue
-            first = stepped.fit if stepped.fit.converged else None
+            first = stepped.fit if is_converged else None
         laws = _laws_of_part(term, untried)
         fitted += laws
         tested = try_term(search, term, first=first) if laws == [term] else try_likeliest(search, laws)

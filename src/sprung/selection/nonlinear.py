@@ -21,7 +21,7 @@ from sprung.selection.from_ordinary_vehicle import (
 from sprung.selection.further_terms import select_further_terms, select_terms_beside, select_terms_in_whole
 from sprung.selection.linear_terms import FLEXIBLE_BODIES
 from sprung.selection.nonlinear_terms import DAMPER_LAW
-from sprung.selection.ordinary_vehicle import fit_usual_terms, likeliest_or_ordinary
+from sprung.selection.ordinary_vehicle import fit_usual_terms, is_ordinary, likeliest_or_ordinary
 from sprung.selection.scoring import score_terms
 from sprung.selection.search import ModelSearch
 from sprung.selection.stepwise import rank_terms, try_likeliest
@@ -69,7 +69,7 @@ def select_nonlinear_terms(search: ModelSearch, plain: ModelStructure) -> ModelS
         best = found if is_result and is_likelier(found, best) else best
         if best is not search and not best.lacks_something:
             break
-    for structure in _without_counterparts(best, plain) if best is not search else ():
+    for structure in _smaller_structures(best, plain) if best is not search else ():
         if not best.is_overdispersed or best.is_misfit_large:
             break
         found = select_beside_usual_terms(replace(search, steps=steps), structure)
@@ -93,19 +93,13 @@ def _searches(
     has_part = any(TERMS[term].explains_all for term in search.selected)
     if ranked and has_part:
         yield partial(_from_base, search, ranked)
-    found = search.structure
-    plain = replace(
-        plain,
-        stop_gap=found.stop_gap,
-        dampers_steepen=found.dampers_steepen,
-        engine_frequency=found.engine_frequency,
-        engine_place=found.engine_place,
-    )
-    is_plain = plain.names == search.structure.names
-    simplest = search if is_plain else search.refit(plain)
+    found, simplest = search.structure, _simplest(search, plain)
+    is_plain = simplest is search
     if ranked:
         yield partial(_from_base, simplest, ranked)
-    if search.is_misfit_large:
+    # Of a vehicle that nobody would recognise unlikely gains of its sensors may hide how much is left.
+    is_of_no_use = search.is_misfit_large or not is_ordinary(search)
+    if is_of_no_use:
         yield partial(_with_law_of_dampers, search, plain)
         yield partial(_with_usual_terms, search, plain)
         # Beside linear terms that are no usual ones, an anti-roll bar say, and without rubber that may lead astray.
@@ -114,31 +108,53 @@ def _searches(
     if ranked and not (is_plain or has_part):
         yield partial(_from_base, search, ranked)
     # A linear fit that has gone astray for the sake of friction, small motions' friction above all, shows no score of it.
-    hidden = [term for term in search.open_terms(tuple(TERMS)) if TERMS[term].resembles_others and term not in ranked]
+    hidden = _hidden(search, ranked)
     bases = [simplest] if is_plain else [search, simplest]
-    for base in bases if search.is_misfit_large and hidden else ():
+    for base in bases if is_of_no_use and hidden else ():
         yield partial(_from_base, base, hidden)
     refused = _refused_parts(search)
     flexible = [term for term in FLEXIBLE_BODIES if term in refused]
-    for body in fit_flexible_bodies(simplest, flexible).values() if search.is_misfit_large else ():
+    for body in fit_flexible_bodies(simplest, flexible).values() if is_of_no_use else ():
         yield partial(_with_usual_terms, body, plain)
-    if search.is_misfit_large or (search.lacks_something and refused):
+    if is_of_no_use or (search.lacks_something and refused):
         yield partial(_from_likeliest_beginning, bases, terms)
 
 
-def _without_counterparts(search: ModelSearch, plain: ModelStructure) -> list[ModelStructure]:
-    """Return a nonlinear model without each of the kinds of rubber in it that move as another one does.
+def _simplest(search: ModelSearch, plain: ModelStructure) -> ModelSearch:
+    """Return the fit of the plain structure, of which starts of terms are those that were found."""
+    found = search.structure
+    plain = replace(
+        plain,
+        stop_gap=found.stop_gap,
+        dampers_steepen=found.dampers_steepen,
+        engine_frequency=found.engine_frequency,
+        engine_place=found.engine_place,
+    )
+    return search if plain.names == found.names else search.refit(plain)
 
-    Beside each other they lead to second optima: one of them may be one too many.
+
+def _hidden(search: ModelSearch, ranked: Sequence[str]) -> list[str]:
+    """Return the open terms that resemble others, so that no score may show them, and that are not tried by their scores."""
+    return [term for term in search.open_terms(tuple(TERMS)) if TERMS[term].resembles_others and term not in ranked]
+
+
+def _smaller_structures(search: ModelSearch, plain: ModelStructure) -> list[ModelStructure]:
+    """Return what a nonlinear model may have too much of: all but friction, and each kind of rubber that moves as another.
+
+    Several terms may have taken the place of one that resembles them, but for a little. Beside each other two kinds of rubber
+    lead to second optima: one of them may be one too many.
     """
+    alone = [term for term in search.structure.terms if TERMS[term].resembles_others and term not in plain.terms]
+    more = {*search.selected} - {*alone}
     rubber = {term: TERMS[term].counterpart for term in search.selected if TERMS[term].is_linear}
     alike = {one for term, other in rubber.items() if other in rubber for one in (term, other)}
     smaller = [search.without(term) for term in search.selected if term in alike]
-    return [
+    without = [
         plain.with_terms((*plain.terms, *(term for term in one.terms if term not in plain.terms)))
         for one in smaller
         if one.is_nonlinear
     ]
+    return [plain.with_terms((*plain.terms, *alone)), *without] if alone and more else without
 
 
 def _with_usual_terms(base: ModelSearch, plain: ModelStructure, so_far: ModelSearch) -> ModelSearch:
@@ -164,7 +180,7 @@ def _refused_parts(search: ModelSearch) -> list[str]:
         for step in search.steps
         if step.fitted and not step.taken and step.gain > search.significant(step.extra)
     }
-    return [term for term in search.open_terms([*refused]) if TERMS[term].vibrates_by_itself]
+    return [term for term in search.open_terms([*refused]) if TERMS[term].explains_all]
 
 
 def _with_refused_parts(search: ModelSearch) -> list[ModelSearch]:

@@ -392,7 +392,7 @@ class ModelSearch:
     def leaves_misfit(self, fit: FitResult, part: float) -> bool:
         """Whether another fit, of the decays or their beginnings, leaves more than a part of this one's model error there."""
         before, after = self._model_errors(fit)
-        much = before > self.sensor_noise
+        much = (self.sensor_noise > 0) & (before > self.sensor_noise)
         # Of a motion without bounds the part is no number.
         weights = 1 / self.sensor_noise[much]
         return bool(much.any()) and not float(after[much] @ weights) <= part * float(before[much] @ weights)

@@ -9,6 +9,7 @@ from sprung.faults.campaign.high_passes import high_passes
 from sprung.faults.campaign.known_quantity import known_quantities
 from sprung.faults.campaign.load_frame import load_frames
 from sprung.faults.campaign.load_position import load_position
+from sprung.faults.campaign.loosened_statement import loosened_statements
 from sprung.faults.campaign.several_vehicles import several_vehicles
 from sprung.faults.campaign.torsion import torsion_test
 
@@ -19,6 +20,7 @@ __all__ = [
     "known_quantities",
     "load_frames",
     "load_position",
+    "loosened_statements",
     "several_vehicles",
     "torsion_test",
 ]

@@ -127,7 +127,7 @@ def _contradicted(stated: Mapping[str, KnownValue], candidate: CandidateFit) -> 
         )
         return Fault("known", places, what, f"Correct the wrong one under [known] in the campaign file, {states}")
     (name,) = stated
-    found = f"{_estimate(name, candidate):.4g} {_unit(name)}"
+    found = f"{evaluate_in(name, candidate):.4g} {_unit(name)}"
     what = f"the recordings contradict {values[0]}; without it they give {found}. It was not used"
     return Fault("known", places, what, f"Correct {name} under [known] in the campaign file, {states}")
 
@@ -137,10 +137,10 @@ def _resting_on_load(name: str, stated: KnownValue, candidate: CandidateFit) -> 
     campaign = candidate.campaign
     loads = {drop.load: campaign.load(drop.load).total_mass(campaign.layout) for drop in campaign.drops}
     loaded = [load for load, mass in loads.items() if mass > 0]
-    if not loaded or not _tells_scale(name) or any(map(_tells_scale, campaign.known)):
+    if not loaded or not tells_scale(name) or any(map(tells_scale, campaign.known)):
         return None
     listed = ", ".join(f"load '{load}'" for load in loaded)
-    ratio = stated.value / _estimate(name, candidate)
+    ratio = stated.value / evaluate_in(name, candidate)
     what = (
         f"masses and rates rest on its mass alone, as {name} = {stated.value:g} {_unit(name)} contradicts it: if {name} is "
         f"right and the mass of the load is wrong, all masses and rates are {ratio:.3g} times as large"
@@ -150,11 +150,27 @@ def _resting_on_load(name: str, stated: KnownValue, candidate: CandidateFit) -> 
     )
 
 
-def _tells_scale(name: str) -> bool:
+def tells_scale(name: str) -> bool:
+    """Return whether a known quantity tells the scale of masses and rates: it is one of them.
+
+    Parameters
+    ----------
+    name
+        Of the quantity.
+    """
     return PARAMETERS[name].scales if name in PARAMETERS else name.endswith("_mass")
 
 
-def _estimate(name: str, candidate: CandidateFit) -> float:
+def evaluate_in(name: str, candidate: CandidateFit) -> float:
+    """Evaluate a quantity in a fit, SI.
+
+    Parameters
+    ----------
+    name
+        Of the quantity.
+    candidate
+        The fit.
+    """
     return evaluate_quantity(name, candidate.fit.names, candidate.fit.values)[0]
 
 

@@ -16,11 +16,11 @@ _LARGEST = 1.0
 
 
 def gain(prediction: ChannelPrediction) -> Iterator[ChannelHypothesis]:
-    """Estimate the gain, unless gravity at rest contradicts it."""
+    """Estimate the gain, unless the reading at rest contradicts it."""
 
     def allows(numbers: Numbers) -> bool:
         (number,) = numbers
-        return number > 0 and bool(abs(np.log(number)) < _LARGEST) and prediction.gravity_allows(number)
+        return number > 0 and bool(abs(np.log(number)) < _LARGEST) and prediction.rest_allows(number)
 
     estimate = prediction.gain
     if not allows((estimate,)):

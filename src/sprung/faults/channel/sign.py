@@ -11,8 +11,8 @@ from sprung.faults.correction import scale_channel
 
 
 def sign(prediction: ChannelPrediction) -> Iterator[ChannelHypothesis]:
-    """Invert the polarity, unless gravity at rest shows that it is right."""
-    if not prediction.gravity_allows(-1.0):
+    """Invert the polarity, unless the reading at rest shows that it is right."""
+    if not prediction.rest_allows(-1.0):
         return
     fault = sign_fault(prediction.sensor.channel)
     yield ChannelHypothesis(

@@ -33,7 +33,7 @@ def unit(prediction: ChannelPrediction) -> Iterator[ChannelHypothesis]:
     if not gain > 0:
         return
     for factor, reading in _factors(prediction.sensor):
-        if abs(np.log(gain / factor)) < _NEAR and prediction.gravity_allows(factor):
+        if abs(np.log(gain / factor)) < _NEAR and prediction.rest_allows(factor):
             yield _in_unit(prediction, factor, f"{reading}, as the comparison with the other channels shows")
 
 
