@@ -276,6 +276,47 @@ def test_types_are_names_or_all_vehicles() -> None:
     assert collect_estimates([]) is None
 
 
+def test_without_any_scale_only_ratios_are_compared() -> None:
+    """Three cars without weighing or load: m_s of 1380 ± 4000 kg would be invented."""
+    made = [
+        {
+            **row_of(
+                sprung.analysis.identify_campaign(
+                    simulate(TABLE_1_CAR, drops=DROPS, seed=seed, duration=1.5), **OPTIONS
+                )
+            ),
+            "status": "done",
+            "campaign": f"/{seed}/campaign.toml",
+        }
+        for seed in (1, 2, 3)
+    ]
+    (one,), _, _ = survey_types(made)
+    assert not one.estimates.has_scale
+    assert not {"m_s", "k_sf", "c_sf"} & set(one.parameters)
+    spread = one.parameters["k_sf/total_mass"]
+    assert spread.unit == "1/s^2"
+    assert spread.mean == pytest.approx(17000 / TABLE_1_CAR.total_mass, abs=4 * spread.mean_std)
+    assert spread.mean_std < 0.05 * spread.mean
+    assert one.parameters["t_f"].unit == "m"
+    assert {row["parameter"] for row in one.rows()} == set(one.parameters)
+    counts = BatchCounts(3, 0, 0)
+    doubtful = {made_row["campaign"]: made_row["reasons"][0] for made_row in made}
+    found = sprung.fleets.Fleet(Path("out"), counts, 3, (), {"doubtful": 3}, {}, {}, (one,), doubtful=doubtful)
+    shown = " ".join(text_of(fleet_view(found)).split())
+    assert "doubtful: 3 campaigns, the first /1/campaign.toml: these drops do not determine m_s" in shown
+    assert "no vehicle was weighed or tested with a known load" in shown
+    assert "k_sf/total_mass" in fleet_html(found)
+    assert found.document()["doubtful"] == doubtful
+
+
+def test_a_parameter_that_no_test_determines_is_left_out() -> None:
+    rows = [estimated(number, "car", "m_s", "I_xx", "m_uf", "k_sf") for number in range(3)]
+    covariance = np.diag([1e-4, 9.0, 1e-4, 1e-4]).ravel().tolist()
+    (one,), _, _ = survey_types([{**row, "covariance": covariance} for row in rows])
+    assert one.estimates.names == ("m_s", "m_uf", "k_sf")
+    assert one.estimates.undetermined == ("I_xx",)
+
+
 def estimated(number: int, vehicle: str, *names: str) -> dict[str, Any]:
     """Return the columns of a row that are compared; a few estimates, each known to 1 %, near zero."""
     position = np.random.default_rng(number).normal(0, 0.02, len(names)).tolist()

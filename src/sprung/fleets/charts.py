@@ -20,7 +20,18 @@ Real = NDArray[np.float64]
 
 RIG_FAULTS: Mapping[str, Mapping[str, float]] = {
     "scale": {"kg": 1, "kg m^2": 1, "N/m": 1, "N s/m": 1, "N": 1, "N m": 1, "N m s": 1},
-    "time base": {"N/m": -2, "N s/m": -1, "N": -2, "N m": -2, "N m s": -1},
+    "time base": {
+        "N/m": -2,
+        "N s/m": -1,
+        "N": -2,
+        "N m": -2,
+        "N m s": -1,
+        "1/s^2": -2,
+        "1/s": -1,
+        "m/s^2": -2,
+        "m^2/s^2": -2,
+        "m^2/s": -1,
+    },
 }
 """Faults of a rig that change several parameters at once: exponents by unit. A scale that reads too much changes every mass,
 inertia and rate alike; seconds that are too long make rates too small."""

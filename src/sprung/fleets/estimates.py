@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from sprung.batch import DONE, Row
 from sprung.display import shown
+from sprung.fleets.scale import PER_TOTAL_MASS, UNDETERMINED, UNITS_PER_MASS, fleet_names, without_scale
 from sprung.vehicle import DERIVED, PARAMETERS
 
 Real = NDArray[np.float64]
@@ -76,6 +77,11 @@ class FleetEstimates:
         Whether the model of a vehicle has the parameter, shape (vehicle, parameter).
     exact
         Whether its value was known exactly before the test, shape (vehicle, parameter).
+    has_scale
+        Whether any vehicle has an absolute scale. Without one, masses, inertias and rates are divided by their vehicle's total
+        mass, and have names such as ``k_sf/total_mass``.
+    undetermined
+        Parameters that are left out because no vehicle's test determines them.
     """
 
     campaigns: tuple[str, ...]
@@ -87,6 +93,8 @@ class FleetEstimates:
     covariances: Real
     known: NDArray[np.bool_]
     exact: NDArray[np.bool_]
+    has_scale: bool = True
+    undetermined: tuple[str, ...] = ()
 
     @property
     def count(self) -> int:
@@ -119,6 +127,22 @@ class FleetEstimates:
             covariances=self.covariances[chosen],
             known=self.known[chosen],
             exact=self.exact[chosen],
+        )
+
+    def determined(self) -> FleetEstimates:
+        """Return the estimates without the parameters that no vehicle's test determines."""
+        kept = (self.known & (self.own_stds < UNDETERMINED)).any(axis=0)
+        names = np.array(self.names, dtype=object)
+        return replace(
+            self,
+            names=tuple(names[kept]),
+            positive=self.positive[kept],
+            sizes=self.sizes[kept],
+            positions=self.positions[:, kept],
+            covariances=self.covariances[:, kept][:, :, kept],
+            known=self.known[:, kept],
+            exact=self.exact[:, kept],
+            undetermined=(*self.undetermined, *names[~kept]),
         )
 
     def values(self, positions: Real) -> Real:
@@ -159,11 +183,13 @@ def collect_estimates(rows: Iterable[Row]) -> FleetEstimates | None:
     usable = [row for row in rows if row["status"] == DONE and row["coordinates"]]
     if not usable:
         return None
+    ratios = without_scale(usable)
+    usable = usable if ratios is None else ratios
     occurrences: dict[str, int] = {}
     for row in usable:
         for name in row["coordinates"]:
             occurrences[name] = occurrences.get(name, 0) + 1
-    names = tuple(name for name in PARAMETERS if occurrences.get(name, 0) > _SHARED * len(usable))
+    names = tuple(name for name in fleet_names() if occurrences.get(name, 0) > _SHARED * len(usable))
     if not names:
         return None
     place = {name: i for i, name in enumerate(names)}
@@ -178,7 +204,7 @@ def collect_estimates(rows: Iterable[Row]) -> FleetEstimates | None:
         matrix = np.array(row["covariance"]).reshape(size, size)
         covariances[i][np.ix_(there, there)] = matrix[np.ix_(here, here)]
     known = np.isfinite(positions)
-    positive = np.array([PARAMETERS[name].positive for name in names])
+    positive = np.array([quantity_of(name).positive for name in names])
     middle = np.nanmedian(np.where(known, positions, np.nan), axis=0)
     spread = np.nanmedian(np.abs(np.where(known, positions, np.nan)), axis=0)
     # A coordinate that is no logarithm is measured in units of its size; a logarithm is dimensionless already.
@@ -191,7 +217,7 @@ def collect_estimates(rows: Iterable[Row]) -> FleetEstimates | None:
         positions, covariances = _with_wheelbase(positions, covariances, place["a"], place["b"])
     exact = known & (np.diagonal(covariances, axis1=1, axis2=2) < _EXACT**2)
     covariances = (covariances + covariances.transpose(0, 2, 1)) / 2 + _FLOOR**2 * np.eye(width)
-    return FleetEstimates(
+    estimates = FleetEstimates(
         campaigns=tuple(row["campaign"] for row in usable),
         labels=label_vehicles(usable),
         names=names,
@@ -201,7 +227,9 @@ def collect_estimates(rows: Iterable[Row]) -> FleetEstimates | None:
         covariances=covariances,
         known=known,
         exact=exact,
-    )
+        has_scale=ratios is None,
+    ).determined()
+    return estimates if estimates.names else None
 
 
 def _with_wheelbase(positions: Real, covariances: Real, front: int, rear: int) -> tuple[Real, Real]:
@@ -225,7 +253,7 @@ def quantity_of(name: str) -> Quantity:
     Parameters
     ----------
     name
-        A parameter of a vehicle, or its wheelbase.
+        A parameter of a vehicle, its ratio to the total mass, or the wheelbase.
 
     Returns
     -------
@@ -233,6 +261,9 @@ def quantity_of(name: str) -> Quantity:
     """
     if name == WHEELBASE:
         return Quantity(DERIVED[name].unit, True)
+    if name.endswith(PER_TOTAL_MASS):
+        own = PARAMETERS[name.removesuffix(PER_TOTAL_MASS)]
+        return Quantity(UNITS_PER_MASS[own.unit], own.positive)
     return Quantity(PARAMETERS[name].unit, PARAMETERS[name].positive)
 
 

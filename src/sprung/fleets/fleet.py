@@ -85,6 +85,8 @@ class Fleet:
     parts
         By name, of those whose vehicles are not all of one part of a vehicle (``[vehicle] model``): number of vehicles by
         part, each of which is a type of its own.
+    doubtful
+        First reasons of the verdict by campaign, of those that are doubtful.
     """
 
     folder: Path
@@ -97,6 +99,7 @@ class Fleet:
     types: tuple[FleetType, ...]
     small_types: Mapping[str, int] = field(default_factory=dict)
     parts: Mapping[str, Mapping[str, int]] = field(default_factory=dict)
+    doubtful: Mapping[str, str] = field(default_factory=dict)
 
     def to_dataframe(self) -> pd.DataFrame:
         """Return the rows as a table, without columns that are empty in all of them."""
@@ -116,6 +119,7 @@ class Fleet:
             "verdicts": dict(self.verdicts),
             "failures": dict(self.failures),
             "rejected": dict(self.rejected),
+            "doubtful": dict(self.doubtful),
             "types": [one.document() for one in self.types],
             "small_types": dict(self.small_types),
             "parts": {name: dict(counts) for name, counts in self.parts.items()},
@@ -188,7 +192,9 @@ def fleet(
         rows = [row for one in found.types for row in one.rows()]
         write_table(folder / HIERARCHICAL_FOLDER, "estimates", rows, HIERARCHICAL_COLUMNS)
         outcomes = _outcomes(folder)
-    return Fleet(folder, summary.counts, summary.computed, summary.gone, *outcomes, *found)
+    verdicts, failures, rejected, doubtful = outcomes
+    done = (folder, summary.counts, summary.computed, summary.gone)
+    return Fleet(*done, verdicts, failures, rejected, *found, doubtful=doubtful)
 
 
 def _listed(extras: str | Sequence[str] | None) -> list[str] | None:
@@ -206,11 +212,13 @@ class _Outcomes(NamedTuple):
     verdicts: Mapping[str, int]
     failures: Mapping[str, str]
     rejected: Mapping[str, str]
+    doubtful: Mapping[str, str]
 
 
 def _outcomes(folder: Path) -> _Outcomes:
     verdicts: Counter[str] = Counter()
-    failures, rejected = {}, {}
+    failures: dict[str, str] = {}
+    reasons: dict[str, dict[str, str]] = {"reject": {}, "doubtful": {}}
     for row in read_rows(folder, ("campaign", "status", "message", "verdict", "reasons")):
         campaign = row["campaign"]
         if row["status"] != DONE:
@@ -218,9 +226,9 @@ def _outcomes(folder: Path) -> _Outcomes:
             failures[campaign] = row["message"].removeprefix(f"{Path(campaign)}: ")
             continue
         verdicts[row["verdict"]] += 1
-        if row["verdict"] == "reject":
-            rejected[campaign] = next(iter(row["reasons"] or ()), "")
-    return _Outcomes(dict(verdicts), failures, rejected)
+        if row["verdict"] in reasons:
+            reasons[row["verdict"]][campaign] = next(iter(row["reasons"] or ()), "")
+    return _Outcomes(dict(verdicts), failures, reasons["reject"], reasons["doubtful"])
 
 
 def _with_arrays(rows: Iterable[Row]) -> Iterator[Row]:

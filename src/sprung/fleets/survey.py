@@ -15,6 +15,7 @@ from sprung.display import shown
 from sprung.fleets.charts import ControlChart, chart_vehicles
 from sprung.fleets.estimates import FleetEstimates, collect_estimates, quantity_of
 from sprung.fleets.population import FEWEST, Population, VehicleEstimates, estimate_vehicles
+from sprung.fleets.scale import UNDETERMINED
 from sprung.uncertainty import NORMAL_95
 from sprung.vehicle import PART_NAMES, layout_of
 
@@ -92,7 +93,7 @@ class FleetType:
         hierarchical = np.median(np.where(own.exact, 0.0, self.hierarchical.stds), axis=0)
         mean_stds = varies * np.sqrt(np.diag(population.mean_covariance))
         spread = varies * population.std
-        half = NORMAL_95 * np.sqrt(spread**2 + mean_stds**2 + np.where(error < 1, error, 0.0) ** 2)
+        half = NORMAL_95 * np.sqrt(spread**2 + mean_stds**2 + np.where(error < UNDETERMINED, error, 0.0) ** 2)
         means = own.values(population.mean)
         low, high = own.values(population.mean - half), own.values(population.mean + half)
         mean_uncertainties = own.stds(population.mean, mean_stds)
@@ -103,7 +104,7 @@ class FleetType:
                 float(mean_uncertainties[j]),
                 float(100 * spread[j]),
                 float(100 * spread[j] * population.std_error[j]),
-                float(100 * error[j]) if error[j] < 1 else None,
+                float(100 * error[j]) if error[j] < UNDETERMINED else None,
                 float(100 * hierarchical[j]),
                 (float(low[j]), float(high[j])),
                 bool(own.constant[j]),
@@ -132,7 +133,7 @@ class FleetType:
             for j, name in enumerate(own.names):
                 if not own.known[i, j]:
                     continue
-                is_determined = single_stds[i, j] < 1
+                is_determined = single_stds[i, j] < UNDETERMINED
                 rows.append(
                     {
                         "type": self.name,
@@ -155,6 +156,8 @@ class FleetType:
         return {
             "name": self.name,
             "vehicles": self.estimates.count,
+            "has_scale": self.estimates.has_scale,
+            "undetermined": list(self.estimates.undetermined),
             "correlated": self.population.correlated,
             "parameters": {name: asdict(spread) for name, spread in self.parameters.items()},
             "run_length": chart.run_length,

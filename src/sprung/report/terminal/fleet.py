@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import re
+from collections import defaultdict
+from collections.abc import Iterator, Mapping
 
 from rich.console import Group, RenderableType
 from rich.text import Text
@@ -16,6 +18,8 @@ from sprung.uncertainty import round_by_uncertainty
 
 _ALTERNATIVES = 2
 """Largest number of further explanations of a drift that are listed."""
+
+_NUMBER = re.compile(r"\d+(\.\d+)?")
 
 _LISTED = 20
 """Largest number of failures or vehicles that the terminal lists."""
@@ -69,6 +73,17 @@ def notes_of(fleet: Fleet) -> Iterator[str]:
     if fleet.gone:
         earlier = count_text(len(fleet.gone), "campaign")
         yield f"{earlier} of an earlier run not among the given ones, the first {fleet.gone[0]}: kept and included"
+    yield from _doubts(fleet.doubtful)
+    for one in fleet.types:
+        if not one.estimates.has_scale:
+            yield (
+                f"{one.name}: no vehicle was weighed or tested with a known load, so that no absolute mass, inertia or rate is "
+                "determined. Their ratios to the total mass of each vehicle are compared (k_sf/total_mass). To determine the "
+                "scale of all, state total_mass under [known] of at least one vehicle"
+            )
+        if one.estimates.undetermined:
+            names = ", ".join(one.estimates.undetermined)
+            yield f"{one.name}: left out, because no vehicle's test determines them: {names}"
     for name, parts in fleet.parts.items():
         counts = ", ".join(f"{part} ({count})" for part, count in parts.items())
         yield (
@@ -84,6 +99,19 @@ def notes_of(fleet: Fleet) -> Iterator[str]:
                 "to compare them, give the vehicles of a type one [vehicle] name and each its own identification, or compare "
                 "all: --one-type"
             )
+
+
+def _doubts(doubtful: Mapping[str, str]) -> Iterator[str]:
+    """Yield the reasons of doubtful verdicts; those that differ only by their numbers are one, the most frequent first."""
+    groups: defaultdict[str, list[str]] = defaultdict(list)
+    for campaign, reason in doubtful.items():
+        groups[_NUMBER.sub("#", reason)].append(campaign)
+    for campaigns in sorted(groups.values(), key=len, reverse=True)[:_LISTED]:
+        first = campaigns[0]
+        those = first if len(campaigns) == 1 else f"{count_text(len(campaigns), 'campaign')}, the first {first}"
+        yield f"doubtful: {those}: {doubtful[first]}"
+    if len(groups) > _LISTED:
+        yield f"doubtful: {count_text(len(groups) - _LISTED, 'more reason')}: see fleet.json"
 
 
 def spread_table(one: FleetType) -> Table:
