@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sprung.uncertainty import round_by_uncertainty
+from sprung.uncertainty import Estimate, round_by_uncertainty, without_rounding_errors
 
 
 @pytest.mark.parametrize(
@@ -30,3 +32,13 @@ def test_what_is_shown_is_near_what_is_meant(value: float, std: float) -> None:
     shown, uncertainty = (float(text) for text in round_by_uncertainty(value, std))
     assert abs(shown - value) <= 0.051 * std + 1e-9 * abs(value)
     assert abs(uncertainty / std - 1) <= 0.051
+
+
+def test_what_follows_from_exact_quantities_is_known() -> None:
+    """Axle masses without uncertainty: their share had one of 1.3e-11 (a rounding error), printed with twelve digits."""
+    share = Estimate(0.578726968174, 1.3e-11, (0.5787269681, 0.5787269682), "1", "estimated", "curvature")
+    rate = Estimate(22000.0, 130.0, (21745.0, 22255.0), "N/m", "estimated", "curvature")
+    found = without_rounding_errors({"share": share}, among={"rate": rate})["share"]
+    assert (found.status, found.std, found.value) == ("known", 0.0, share.value)
+    noise_free = {name: replace(one, std=1e-13 * (one.std or 0)) for name, one in {"rate": rate, "other": rate}.items()}
+    assert without_rounding_errors(noise_free) == noise_free

@@ -40,6 +40,7 @@ from sprung.preprocess import FreeDecay
 from sprung.progress import Progress, Step
 from sprung.results import FitReport, Result, SensorEstimate, Series, TestedVehicle, setup_of, withhold_estimates
 from sprung.selection import SEPARATE_TRACKS, TERMS, ModelStructure, SelectionStep, begin_no_later, describe_terms
+from sprung.uncertainty import without_rounding_errors
 from sprung.vehicle import (
     EMPTY,
     LOAD_MASS,
@@ -65,7 +66,7 @@ def assess(run: Analysis, progress: Progress) -> Analysis:
     channels = tuple(sensor.channel for sensor in campaign.sensors)
     looked_at = check_prepared(campaign, run.prepared._replace(decays=decays))
     clocks = clock_reports(optimum, fit, decays)
-    estimates = to_estimates(fit, structure.known)
+    estimates = without_rounding_errors(to_estimates(fit, structure.known))
     misfit = estimate_model_error(optimum)
     fitted = optimum.fitted
     motions = body_motions(optimum, decays, fitted, campaign.sensors)
@@ -78,19 +79,20 @@ def assess(run: Analysis, progress: Progress) -> Analysis:
     profiles = {} if rejected else profiles_of(run.options.profile, optimum, statistics, structure.known, progress)
     loads = [load.name for load in campaign.loads if any(decay.load == load.name for decay in decays)]
     setup = setup_of(campaign, fit, structure.known, run.options.texts)
+    derived = {
+        **({} if rejected else characteristics_of(fit, structure.known, structure.linear_models[EMPTY.name])),
+        **({} if rejected else rates_at_motion_ratios(fit, campaign.motion_ratio)),
+        **about_roll_axis(fit, structure.heights),
+        **{name: estimate_of(fit, structure.known, name) for name in fit.names if name.startswith(LOAD_MASS)},
+        **{name: found for name, found in profiles.items() if name not in estimates},
+    }
     result = Result(
         version=setup.software["sprung"],
         tested_vehicle=TestedVehicle(name=campaign.name, identification=campaign.identification),
         verdict=verdict,
         next_step=None if rejected else recommend_next_step(run),
         parameters={name: profiles.get(name, found) for name, found in estimates.items()},
-        derived={
-            **({} if rejected else characteristics_of(fit, structure.known, structure.linear_models[EMPTY.name])),
-            **({} if rejected else rates_at_motion_ratios(fit, campaign.motion_ratio)),
-            **about_roll_axis(fit, structure.heights),
-            **{name: estimate_of(fit, structure.known, name) for name in fit.names if name.startswith(LOAD_MASS)},
-            **{name: found for name, found in profiles.items() if name not in estimates},
-        },
+        derived=without_rounding_errors(derived, among=estimates),
         scale=scale_of(fit),
         unidentifiable=unidentifiable_combinations(fit, estimates),
         correlation=correlation_of(fit, estimates),

@@ -2,6 +2,7 @@
 
 from sprung.uncertainty.covariance import Covariance
 from sprung.uncertainty.estimate import NORMAL_95, Estimate, IntervalFrom, Ratio, Status
+from sprung.uncertainty.exactness import without_rounding_errors
 from sprung.uncertainty.known_value import KnownValue
 from sprung.uncertainty.named_values import NamedValues
 from sprung.uncertainty.rounding import round_by_uncertainty
@@ -16,4 +17,5 @@ __all__ = [
     "Ratio",
     "Status",
     "round_by_uncertainty",
+    "without_rounding_errors",
 ]
