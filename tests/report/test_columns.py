@@ -120,3 +120,9 @@ def test_further_blocks_have_the_rows_that_say_anything_there() -> None:
         "name  of  dddddddd  eeeeeeee",
         "one   x          4         5",
     ]
+
+
+def test_negative_numbers_of_a_page_have_minus_signs() -> None:
+    cells = (("run-2", "-0.14"), ("2026-11-22", "-3 to -1"))
+    table = Table("t", ("name", "x"), cells, frozenset("x"))
+    assert [cell in table.html() for cell in ("run-2", "−0.14", "2026-11-22", "−3 to −1")] == [True] * 4

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import re
+
 from sprung.uncertainty import Estimate, round_by_uncertainty
 
 _FINEST = 6
 """Largest number of decimal places of a frequency in Hz or a damping ratio: further ones are rounding errors."""
+
+_NEGATIVE = re.compile(r"(?<![\w.)\]-])-(?=\d)")
+"""Hyphen of a negative number."""
 
 _SUPERSCRIPT = str.maketrans({"^": "", "2": "²"})
 
@@ -47,6 +52,26 @@ def percent_text(percent: float) -> str:
     if percent >= 10:
         return f"{percent:.0f}"
     return f"{percent:.2f}" if percent >= 0.01 else f"{percent:.1g}"
+
+
+def with_minus_signs(text: str) -> str:
+    """Return text in which every negative number has a minus sign in place of a hyphen.
+
+    Parameters
+    ----------
+    text
+        Of a cell; hyphens in words, names and dates stay.
+
+    Returns
+    -------
+    str
+
+    Examples
+    --------
+    >>> with_minus_signs("-0.14 to 2, run-2, 2026-11-22")
+    '−0.14 to 2, run-2, 2026-11-22'
+    """
+    return _NEGATIVE.sub("\N{MINUS SIGN}", text)
 
 
 def unit_text(unit: str) -> str:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import html
 from dataclasses import dataclass
 
+from sprung.tables.cells import with_minus_signs
+
 
 def escaped(text: str) -> str:
     """Return text escaped for HTML, unprintable characters replaced.
@@ -71,5 +73,6 @@ class Table:
 
 
 def _row(cells: tuple[str, ...], kinds: list[str]) -> str:
-    first, *others = (f"{kind}>{escaped(cell)}" for cell, kind in zip(cells, kinds, strict=True))
+    texts = (with_minus_signs(cell) if kind else cell for cell, kind in zip(cells, kinds, strict=True))
+    first, *others = (f"{kind}>{escaped(text)}" for text, kind in zip(texts, kinds, strict=True))
     return f'<th scope="row"{first}</th>' + "".join(f"<td{other}</td>" for other in others)

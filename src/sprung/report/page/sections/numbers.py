@@ -21,7 +21,7 @@ from sprung.results import (
     ratios_table,
     sensors_table,
 )
-from sprung.tables import Table, unit_text, value_cells
+from sprung.tables import Table, unit_text, value_cells, with_minus_signs
 from sprung.uncertainty import Estimate, round_by_uncertainty
 from sprung.units import quantity_name
 from sprung.vehicle import Layout, Sensor, VehicleModel, layout_of
@@ -99,7 +99,7 @@ def _parameter(name: str, estimate: Estimate, half: float, layout: Layout) -> Co
         "name": name,
         "symbol": symbol(name),
         "meaning": meaning_of(name, layout),
-        "value": value,
+        "value": with_minus_signs(value),
         "std": std,
         "percent": percent,
         "unit": unit,
