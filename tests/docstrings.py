@@ -69,7 +69,9 @@ _EQUATION = re.compile(r"\beqs?\. \((\d+)\)")
 _LAST_EQUATION = 23
 """Of the paper: whose equations are cited without a name."""
 
-_RAISING = frozenset({"InputError", "ValueError", "ResultFileError", "SprungError", "KeyError", "TypeError"})
+_RAISING = frozenset(
+    {"InputError", "ValueError", "RejectedResultError", "ResultFileError", "SprungError", "KeyError", "TypeError"}
+)
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import difflib
 import re
+from collections import defaultdict
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -83,6 +84,10 @@ class UnknownNameError(SprungError, KeyError):
         return self._text
 
 
+class RejectedResultError(InputError):
+    """Result that is rejected, where its estimates are needed."""
+
+
 class ResultFileError(InputError):
     """Saved result that cannot be read: newer schema, truncated or edited."""
 
@@ -108,6 +113,54 @@ class Fault:
     where: str
     what: str
     do: str
+
+    def as_problem(self, expected: str) -> Problem:
+        """Return the problem of an input of which the fault leaves nothing to use.
+
+        Parameters
+        ----------
+        expected
+            What is needed.
+
+        Returns
+        -------
+        Problem
+        """
+        return Problem(self.where, f"the fault {self.code} ({self.what})", expected, self.do)
+
+
+def merge_faults(faults: Iterable[Fault]) -> list[Fault]:
+    """Return faults with those that differ only by their place merged into one.
+
+    Parameters
+    ----------
+    faults
+        In any order.
+
+    Returns
+    -------
+    list of Fault
+        In the order of the first of each; its place names all recordings, each with its channels.
+
+    Examples
+    --------
+    >>> gap = "1 of 900 samples is missing"
+    >>> merge_faults([Fault("missing", f"a.csv: {channel}", gap, "See the logger.") for channel in ("x", "y")])[0].where
+    'a.csv: x, y'
+    """
+    places: defaultdict[tuple[str, str, str], list[str]] = defaultdict(list)
+    for fault in faults:
+        places[fault.code, fault.what, fault.do].append(fault.where)
+    return [Fault(code, _join_places(where), what, do) for (code, what, do), where in places.items()]
+
+
+def _join_places(places: Iterable[str]) -> str:
+    channels: defaultdict[str, list[str]] = defaultdict(list)
+    for place in dict.fromkeys(places):
+        recording, _, channel = place.partition(": ")
+        channels[recording] += [channel] if channel else []
+    texts = [f"{recording}: {', '.join(own)}" if own else recording for recording, own in channels.items()]
+    return ("; " if any(channels.values()) else ", ").join(texts)
 
 
 class Problems:
@@ -200,7 +253,7 @@ def record_failure(
         omissions.append(sentence)
 
 
-def did_you_mean(word: str, allowed: Iterable[str]) -> str:
+def did_you_mean(word: str, allowed: Iterable[str], *, listed: bool = False) -> str:
     """Return a sentence with the allowed word that was probably meant.
 
     Parameters
@@ -209,12 +262,14 @@ def did_you_mean(word: str, allowed: Iterable[str]) -> str:
         The word.
     allowed
         The allowed words.
+    listed
+        Whether the message lists them already, as what is expected.
 
     Returns
     -------
     str
         ``Did you mean 'wheels'?`` if one is close, or the one of which the word's initials are, as of "rear right" those are
-        rr; all of them if several are equally close; otherwise the allowed words.
+        rr; all of them if several are equally close; otherwise the allowed words, unless they are listed already.
     """
     allowed = sorted(set(allowed))
     initials = "".join(part[0] for part in re.split(r"[\W_]+", word.lower()) if part)
@@ -228,7 +283,9 @@ def did_you_mean(word: str, allowed: Iterable[str]) -> str:
         nearest = nearest[: 1 if len(nearest) > _MOST_ALIKE else None]  # of many that are as close none is meant more
         meant = [f"'{name}'" for name in allowed if name.lower() in nearest]
         return f"Did you mean {enumerated(meant, 'or')}?"
-    return f"Allowed: {', '.join(allowed)}." if allowed else "Nothing is allowed here."
+    if not allowed:
+        return "Nothing is allowed here."
+    return "Write one of these." if listed else f"Allowed: {', '.join(allowed)}."
 
 
 def _typing_errors(written: str, meant: str) -> int:

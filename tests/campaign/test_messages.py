@@ -135,6 +135,34 @@ FILE_FAULTS: dict[str, tuple[tuple[str, str], tuple[str, ...]]] = {
         ('"body_fl"\non = "body"', '"body_fl"\non = "pad"'),
         ("sensor[1].on", "Did you mean 'pad fl', 'pad fr', 'pad rl' or 'pad rr'?"),
     ),
+    "axis of no rate": (
+        ('"body_fl"\non = "body"', '"body_fl"\non = "body"\nquantity = "angular-rate"\nunit = "deg/s"\naxis = "yaw"'),
+        ('sensor[1].axis (body_fl): found "yaw"; expected one of "pitch", "roll". Write one of these.',),
+    ),
+    "unknown excitation": (
+        ('"one.csv"', '"one.csv"\nexcitation = "bump"'),
+        ('expected one of "drop", "push", "pass", "pads". Write one of these.',),
+    ),
+    "speed of a drop": (
+        ('"one.csv"', '"one.csv"\nspeed = 5'),
+        ('not of a drop; write excitation = "pass", or remove speed.',),
+    ),
+    "speed of another vehicle": (
+        ('"one.csv"', '"one.csv"\nexcitation = "pass"\nspeed = 30'),
+        (
+            "drop[1].speed (one.csv): found 30",
+            "0.2 to 15 m/s, the range of passes over a bump",
+            "8.3333 if it was stated in km/h",
+        ),
+    ),
+    "section of a simulation": (
+        ("[known]", "[bump]\nheight = 0.05\n[known]"),
+        ("campaign.toml: bump: found [bump], a section of a vehicle file", "Remove it"),
+    ),
+    "vehicle file": (
+        ("[known]", "[parameters]\nm_s = 1380\n[known]"),
+        ("found [parameters], which makes it a vehicle file", "`sprung plan`", "`sprung simulate`"),
+    ),
     "newer schema": (("schema = 1", "schema = 2\nfuture = 3"), ("schema 2", "Update sprung")),
     "no schema of ours": (("schema = 1", 'schema = "one"'), ("schema: found schema 'one'", "Write schema = 1")),
 }
@@ -217,6 +245,13 @@ def test_a_missing_campaign_file_names_its_neighbour(folder: Folder) -> None:
         read(path / "elsewhere" / "campaign.toml")
 
 
+def test_a_folder_of_recordings_without_a_campaign_file_is_to_be_drafted(folder: Folder) -> None:
+    path = folder()
+    (path / "campaign.toml").unlink()
+    with pytest.raises(InputError, match=r"no such file.*Draft it from the recordings: `sprung new .*`"):
+        read(path)
+
+
 def test_a_recording_in_place_of_the_campaign_file(folder: Folder) -> None:
     with pytest.raises(InputError, match=r"one\.csv: line 1, column .*Give the campaign file"):
         read(folder() / "one.csv")
@@ -230,6 +265,16 @@ VEHICLE_FAULTS: dict[str, tuple[tuple[str, str], tuple[str, ...]]] = {
     "no half-distance": (("t_f = 0.74\n", ""), ("parameters.t_f", "either t_f, or t_f1 (dampers) and t_f2 (springs)")),
     "wheelbase beyond a + b": (("b = 1.51", "b = 1.6"), ("vehicle.wheelbase", "a + b = 2.85 m")),
     "unknown load": (('load = "ballast"', 'load = "x"'), ("drop[2].load", "'x'", "[[load]]")),
+    "misspelt section": (("[parameters]", "[parameter]"), ("unknown key 'parameter'", "Did you mean 'parameters'?")),
+    "bump in millimetres": (
+        ("[known]", "[bump]\nheight = 40\n[known]"),
+        ("bump.height: found 40; expected 0.002 to 0.6 m, the range of bumps", "0.04 if it was stated in mm"),
+    ),
+    "long bump": (
+        ("[known]", "[bump]\nlength = 300\n[known]"),
+        ("bump.length: found 300", "0.3 if it was stated in mm"),
+    ),
+    "force in kilonewtons": (("[known]", "[push]\nforce = 0.9\n[known]"), ("push.force", "900 if it was stated in kN")),
 }
 
 

@@ -110,7 +110,7 @@ BAD: dict[str, tuple[Spoil, tuple[str, ...], int]] = {
         ("campaign.toml: found a folder", "Rename the folder"),
         1,
     ),
-    "no campaign": (lambda folder: remove(folder, "campaign.toml"), ("no such file", "sprung demo"), 1),
+    "no campaign": (lambda folder: remove(folder, "campaign.toml"), ("no such file", "sprung new"), 1),
     "empty campaign": (
         lambda folder: write(folder, b"", "campaign.toml"),
         ("0 sensors on the body", "no drops"),

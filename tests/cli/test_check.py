@@ -146,6 +146,7 @@ def test_a_recording_that_cannot_be_read_costs_its_drop_only(tmp_path: Path) -> 
     assert last_line(said.out) == "1 of 2 drops usable"
     [good, lost] = run("check", folder.path, "--no-page", "--json").json["drops"]
     assert (good["file"], lost["file"], lost["faults"]) == ("empty_pitch_front.csv", "empty_bounce.csv", ["unreadable"])
+    assert "found a single column, 'no', expected the time and at least one channel" in " ".join(said.out.split())
     assert run("identify", folder.path).status == 2
 
 

@@ -75,10 +75,13 @@ def test_bad_input_writes_nothing(options: tuple[str, ...], words: str, results:
     assert sorted(results.iterdir()) == before
 
 
-def test_a_rejected_result_is_status_3_with_tables_and_2_without(tmp_path: Path) -> None:
+def test_a_rejected_result_is_status_3_with_tables_and_without(tmp_path: Path) -> None:
     folder = tmp_path / "results"
     sprung.load(SAVED / "reject.json", series=False).save(folder)
-    assert run("export", folder, "--to", "fmu").status == 2
+    refused = run("export", folder, "--to", "fmu")
+    assert refused.status == 3
+    assert "found the verdict reject" in refused.err
+    assert run("export", folder, "--to", "fmu", "--number", "3").status == 2  # usage, whatever the result
     said = run("export", folder, "--to", "latex")
     assert said.status == 3
     assert "rejected" in said.err

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shlex
 from pathlib import Path
 
 import pytest
@@ -68,7 +69,7 @@ def test_it_never_overwrites_a_campaign_file(folder: Path, new: Run) -> None:
     before = (folder / "campaign.toml").read_bytes()
     again = run("new", folder)
     assert again.status == 2
-    assert f"Continue with it (sprung check {folder / 'campaign.toml'})" in again.err
+    assert f"Continue with it (`sprung check {shlex.quote(str(folder / 'campaign.toml'))}`)" in again.err
     assert "remove it" in again.err
     assert (folder / "campaign.toml").read_bytes() == before
 

@@ -28,6 +28,17 @@ def test_whatever_is_no_reading_is_missing(tmp_path: Path, cell: str) -> None:
     assert "1 of 1800 samples is missing, the first in line 502; filled in" in filled["what"]
 
 
+def test_one_short_line_is_one_fault(tmp_path: Path) -> None:
+    folder = copy_sedan(tmp_path / "short", DROPS[:1])
+    folder.lines(lambda lines: [*lines[:500], ",".join(lines[500].split(",")[:4]), *lines[501:]])
+    said = run("check", folder.path, "--json", "--no-drawings")
+    assert [drop["faults"] for drop in said.json["drops"]] == [["missing"]]
+    text = " ".join(run("check", folder.path).out.split())
+    assert text.count("1 of 1800 samples is missing") == 1
+    assert "empty_bounce.csv: body_rr, wheel_fl, wheel_fr, wheel_rl, wheel_rr: missing" in text
+    assert "missing, missing" not in text
+
+
 @pytest.mark.slow
 def test_a_missing_sample_is_filled_in_and_told(folder: Folder) -> None:
     plain = run("identify", folder.path, "--json", "--no-report")
@@ -95,6 +106,15 @@ def test_a_drop_that_ends_too_soon_is_left_out(folder: Folder) -> None:
     assert (drop["start"], drop["end"], drop["faults"]) == (None, None, ["no-decay"])
     assert "no-decay" in text.out
     assert "left out" in text.out
+
+
+def test_a_fault_that_leaves_nothing_is_named_as_one(tmp_path: Path) -> None:
+    folder = copy_sedan(tmp_path / "short", DROPS[:1])
+    folder.lines(lambda lines: lines[:11])
+    said = run("check", folder.path)
+    assert said.status == 2
+    assert "empty_bounce.csv: found the fault no-decay (" in said.err
+    assert "expected a usable decay in at least one drop" in said.err
 
 
 def test_a_recording_without_a_release(tmp_path: Path) -> None:

@@ -21,6 +21,7 @@ from sprung.drafting import DraftCampaign
 from sprung.drafting.layout_names import wheels_named_anywhere
 from sprung.drafting.named_settings import conditions_named
 from sprung.drafting.quantity_names import is_travel_named, quantity_named, rotation_named
+from sprung.drafting.recording_files import find_copies
 from sprung.drafting.release_detection import average_pieces, detect_releases
 from sprung.errors import InputError
 from sprung.report import draft_view
@@ -414,3 +415,11 @@ def test_copies_of_what_cannot_be_read_are_not_read(tmp_path: Path) -> None:
         (tmp_path / name).write_text("It rained.\n")
     draft = drafted(tmp_path, {"body L [mm]": coordinates[0], "wheel L [mm]": coordinates[3]})
     assert (set(draft.unreadable), draft.copies) == ({"a.txt", "b.txt"}, {})
+
+
+def test_of_copies_whose_paths_say_nothing_else_the_shortest_is_kept(tmp_path: Path) -> None:
+    for name in ("bounce.csv", "bounce (copy).csv", "sub/bounce.csv"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text("time,a\n0,1\n")
+    names = ["bounce (copy).csv", "bounce.csv", "sub/bounce.csv"]
+    assert find_copies(tmp_path, names) == {"bounce (copy).csv": "bounce.csv", "sub/bounce.csv": "bounce.csv"}

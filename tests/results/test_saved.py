@@ -105,6 +105,16 @@ def test_an_edited_document_is_refused(copy: Path, name: str) -> None:
         sprung.load(copy)
 
 
+def test_series_that_are_no_archive_are_named_in_plain_words(copy: Path) -> None:
+    """Of a file that holds other bytes NumPy says that it can be loaded unsafely (once in the message)."""
+    (copy / "series.npz").write_bytes(b"x")
+    with pytest.raises(
+        ResultFileError, match=r"no archive of NumPy arrays: cut off, damaged or another file"
+    ) as refused:
+        sprung.load(copy)
+    assert not {"pickled", "unsafely"} & set(str(refused.value).split())
+
+
 def test_every_reason_is_told_at_once(copy: Path) -> None:
     change(copy, put("verdict", "state", value="perfect"))
     change(copy, put("scale", "known", value="perhaps"))

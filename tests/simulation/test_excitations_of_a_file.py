@@ -70,3 +70,10 @@ def test_what_they_cannot_be_is_said_with_its_place(tmp_path: Path) -> None:
     assert "push.shape" in text
     assert '"hand", "rope", "lift"' in text
     assert "bump.height" in text
+
+
+def test_a_bump_in_memory_has_the_limits_of_one_in_a_file() -> None:
+    with pytest.raises(
+        InputError, match=r"simulate: bump\.height: found 40; expected 0\.002 to 0\.6 m, the range of bumps"
+    ):
+        sprung.simulate(TABLE_1_CAR, drops=DROPS, bump=Bump(height=40.0))

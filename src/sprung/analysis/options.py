@@ -32,10 +32,12 @@ def model_options(
     problems = Problems()
     if tracks is not None and tracks not in get_args(Tracks):
         known = get_args(Tracks)
-        problems.add("tracks", repr(tracks), " or ".join(map(repr, known)), did_you_mean(str(tracks), known))
+        do = did_you_mean(str(tracks), known, listed=True)
+        problems.add("tracks", repr(tracks), " or ".join(map(repr, known)), do)
     chosen = (extras,) if isinstance(extras, str) else None if extras is None else tuple(extras)
     for extra in chosen or ():
         if extra not in EXTRAS:
-            problems.add("extras", repr(extra), f"any of {', '.join(EXTRAS)}", did_you_mean(str(extra), EXTRAS))
+            do = did_you_mean(str(extra), EXTRAS, listed=True)
+            problems.add("extras", repr(extra), f"any of {', '.join(EXTRAS)}", do)
     problems.raise_if_any()
     return tracks, chosen

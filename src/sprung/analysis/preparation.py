@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from sprung.analysis.analysis import Analysis
 from sprung.analysis.on_pads import require_linear_terms
-from sprung.errors import Problems
+from sprung.errors import InputError, Problem
 from sprung.faults import examine
 from sprung.preprocess import Prepared, exclude_drops, prepare
 from sprung.progress import Progress, Step
@@ -41,10 +41,7 @@ def preprocess(run: Analysis, progress: Progress) -> Analysis:
 def _require_decays(run: Analysis, prepared: Prepared) -> None:
     if prepared.decays:
         return
-    problems = Problems()
     where = "campaign" if run.campaign.path is None else run.campaign.path.name
-    problems.add(where, "no drop that can be used", "at least one", "Read the reasons below and record again.")
-    for _, faults in prepared.left_out:
-        for fault in faults:
-            problems.add(fault.where, fault.what, "a usable decay", fault.do)
-    problems.raise_if_any()
+    none = Problem(where, "no drop that can be used", "at least one", "Read the reasons below and record again.")
+    reasons = (fault.as_problem("a usable decay") for _, faults in prepared.left_out for fault in faults)
+    raise InputError([none, *reasons])

@@ -16,13 +16,14 @@ from sprung.campaign.drop import (
     unique_recording_names,
 )
 from sprung.campaign.excitation import Bump, Push
+from sprung.campaign.excitation_checks import check_excitation
 from sprung.campaign.gap_filling import MAX_MISSING, fill_short_gaps
 from sprung.campaign.known_values import KnownValueLike, parse_known_values
 from sprung.campaign.logger_files import find_logger_files
 from sprung.campaign.logger_merging import merge_loggers
 from sprung.campaign.placeholders import find_placeholders, placeholder
 from sprung.campaign.plausibility import explain_implausible
-from sprung.campaign.reading import CAMPAIGN_FILE, read, read_document, read_vehicle
+from sprung.campaign.reading import CAMPAIGN_FILE, is_vehicle_file, read, read_document, read_vehicle
 from sprung.campaign.recording import CLOCK_STD, LoggerClock, Recording
 from sprung.campaign.schema_file import SCHEMA_FILE, SCHEMA_LINE, schema_text
 from sprung.campaign.sep005 import to_sep005
@@ -56,6 +57,7 @@ __all__ = [
     "TestRecord",
     "campaign_files",
     "check_document",
+    "check_excitation",
     "check_statements",
     "drop_kind",
     "excitation_of",
@@ -63,6 +65,7 @@ __all__ = [
     "fill_short_gaps",
     "find_logger_files",
     "find_placeholders",
+    "is_vehicle_file",
     "merge_loggers",
     "parse_known_values",
     "parse_toml",

@@ -203,7 +203,7 @@ def _check_model(parsed: ParsedFile[CampaignFile], problems: Problems) -> None:
         for name in names:
             if name not in possible:
                 where, expected = parsed.where("model", key), f"any of {', '.join(possible)}"
-                problems.add(where, f"'{name}'", expected, did_you_mean(name, possible))
+                problems.add(where, f"'{name}'", expected, did_you_mean(name, possible, listed=True))
     for name in sorted(set(model.extras or ()) & set(model.forbid)):
         do = "Remove it from one of the two."
         problems.add(

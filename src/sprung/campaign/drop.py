@@ -107,7 +107,7 @@ class Drop:
     excitation: Excitation = "drop"
     """Released from blocks; pushed or pulled and let go; driven over an unknown bump onto flat road; or driven by pads."""
     speed: Positive | None = None
-    """Speed of a pass over a bump, m/s, where it is known."""
+    """Speed of a pass over a bump, m/s, where it is known; 0.2 to 15 m/s."""
     height: Positive | None = None
     """Height of the blocks, m."""
     start: Finite | None = None
@@ -124,9 +124,13 @@ class Drop:
         if self.file is not None and self.files:
             raise ValueError("name either the file or, where several loggers recorded it, the files")
         if self.speed is not None and self.excitation != "pass":
-            raise ValueError(f'a speed is that of a pass, not of a {self.excitation}; write excitation = "pass"')
+            raise ValueError(
+                f'a speed is that of a pass, not of a {self.excitation}; write excitation = "pass", or remove speed'
+            )
         if self.height is not None and self.excitation != "drop":
-            raise ValueError(f"the height of blocks is for a drop, not for a {self.excitation}; leave it out")
+            raise ValueError(
+                f"the height of blocks is for a drop, not for a {self.excitation}; remove height, or excitation"
+            )
         if len(set(self.files)) != len(self.files):
             raise ValueError("name each file once")
         if self.name is not None and (not self.name.isprintable() or {"/", "\\"} & set(self.name)):

@@ -142,7 +142,7 @@ def _sources(files: Mapping[int, Sequence[str]], path: Path, signals: Signals) -
 
 def _unread_fault(problem: Problem) -> Fault:
     """Return the fault of a recording that cannot be read."""
-    what = f"{problem.found}, where {problem.expected} is expected; the recording is left out"
+    what = f"found {problem.found}, expected {problem.expected}; the recording is left out"
     return Fault("unreadable", problem.where, what, problem.do)
 
 
@@ -222,7 +222,7 @@ def _refuse_unusable(recordings: Sequence[Recording]) -> None:
     if any(recording.usable.any() for recording in recordings):
         return
     raise InputError(
-        Problem(fault.where, fault.what, "something usable in at least one drop", fault.do)
+        fault.as_problem("something usable in at least one drop")
         for recording in recordings
         for fault in recording.faults
     )

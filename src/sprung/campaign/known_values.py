@@ -105,7 +105,8 @@ def parse_motion_ratios(given: Mapping[str, KnownValueLike], where: str, problem
     for name, quantity in given.items():
         place = f"{where}['{name}']"
         if name not in MOTION_RATIOS:
-            problems.add(place, f"'{name}'", f"one of {', '.join(MOTION_RATIOS)}", did_you_mean(name, MOTION_RATIOS))
+            do = did_you_mean(name, MOTION_RATIOS, listed=True)
+            problems.add(place, f"'{name}'", f"one of {', '.join(MOTION_RATIOS)}", do)
             continue
         ratio = parse_known_value(quantity, place, problems)
         if ratio is not None:

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from pydantic import ValidationError
 
+from sprung.campaign.file_kind import find_parameters_section
 from sprung.campaign.placeholders import find_placeholders
-from sprung.campaign.schema import CampaignFile
+from sprung.campaign.schema import CampaignFile, VehicleFileSchema
 from sprung.campaign.schema_file import SCHEMA
 from sprung.campaign.schema_problems import Place, format_place, problems_from_validation
 from sprung.errors import InputError, Problem, Problems
@@ -92,7 +93,7 @@ def parse_document(model: type[File], document: Mapping[str, Any], name: str, pr
     Raises
     ------
     InputError
-        If nothing of it can be understood, as it is of a newer schema.
+        If nothing of it can be understood, as it is of a newer schema, or of the other kind of file.
     """
     number = document.get("schema", SCHEMA)
     if number != SCHEMA:
@@ -100,6 +101,11 @@ def parse_document(model: type[File], document: Mapping[str, Any], name: str, pr
         do = "Update sprung: the file was written for a newer version." if newer else f"Write schema = {SCHEMA}."
         found, expected = f"schema {number!r}", f"schema {SCHEMA}, which this version of sprung reads"
         raise InputError([Problem(f"{name}: schema", found, expected, do)])
+    section = None if issubclass(model, VehicleFileSchema) else find_parameters_section(document)
+    if section is not None:
+        found = f"[{section}], which makes it a vehicle file"
+        do = "Plan its test with `sprung plan`, or simulate its recordings with `sprung simulate`."
+        raise InputError([Problem(f"{name}: {section}", found, "a campaign file", do)])
     found, do = "a placeholder", "Replace the text by the value."
     placeholders = {
         place: Problem(format_place(name, place, document), found, what, do)

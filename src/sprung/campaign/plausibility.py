@@ -1,4 +1,4 @@
-"""What a two-axle road vehicle may have: limits of every quantity that a campaign states, and the unit in which it was meant.
+"""What a two-axle road vehicle and its tests may have: limits of every quantity that a campaign states, and the unit meant.
 
 The limits hold from a quad bike of 100 kg to a truck or coach of 40 t, with room to spare on both sides. They are no prior of
 the estimate: they only tell a value from a slip of the unit or of the pen.
@@ -35,12 +35,15 @@ class Limits(NamedTuple):
         SI, a key of the other units.
     zero
         Whether it may be 0 as well: what a vehicle need not have.
+    of
+        What has such values.
     """
 
     low: float
     high: float
     unit: str
     zero: bool = False
+    of: str = "road vehicles"
 
     def contain(self, value: float) -> bool:
         """Return whether a value, SI, is within the limits."""
@@ -50,7 +53,7 @@ class Limits(NamedTuple):
     def expected(self) -> str:
         """What is expected, in words."""
         none = "0, or " if self.zero else ""
-        return f"{none}{self.low:g} to {self.high:g} {self.unit}, the range of road vehicles"
+        return f"{none}{self.low:g} to {self.high:g} {self.unit}, the range of {self.of}"
 
 
 _SYMMETRIC_LENGTH = Limits(-20.0, 20.0, "m")
@@ -108,17 +111,21 @@ LIMITS: Mapping[str, Limits] = {
     "wheel_height": Limits(0.05, 1.2, "m"),
     "roll_axis_height": Limits(-2.0, 3.0, "m"),
     "motion ratio": Limits(0.2, 3.0, "m per m"),
-    "block height": Limits(0.002, 0.6, "m"),
-    "speed over a bump": Limits(0.2, 15.0, "m/s"),
+    "block height": Limits(0.002, 0.6, "m", of="blocks"),
+    "speed over a bump": Limits(0.2, 15.0, "m/s", of="passes over a bump"),
+    "bump height": Limits(0.002, 0.6, "m", of="bumps"),
+    "bump length": Limits(0.02, 10.0, "m", of="bumps"),
+    "push force": Limits(10, 1e6, "N", of="pushes"),
+    "push frequency": Limits(0.05, 20.0, "Hz", of="pushes"),
     "x": _SYMMETRIC_LENGTH,
     "y": Limits(-3.0, 3.0, "m"),
     "z": Limits(-1.0, 6.0, "m"),
-    "load mass": Limits(0.5, 40e3, "kg", zero=True),
-    "load mass on a wheel": Limits(0.02, 2e3, "kg", zero=True),
-    "load inertia": Limits(0, 2e6, "kg m^2"),
-    "corner frequency": Limits(1e-4, 30.0, "Hz"),
-    "full scale": Limits(1e-4, 1e6, "m/s^2"),
-    "resolution": Limits(1e-9, 10.0, "m/s^2"),
+    "load mass": Limits(0.5, 40e3, "kg", zero=True, of="loads"),
+    "load mass on a wheel": Limits(0.02, 2e3, "kg", zero=True, of="loads on a wheel"),
+    "load inertia": Limits(0, 2e6, "kg m^2", of="loads"),
+    "corner frequency": Limits(1e-4, 30.0, "Hz", of="AC-coupled sensors"),
+    "full scale": Limits(1e-4, 1e6, "m/s^2", of="accelerometers"),
+    "resolution": Limits(1e-9, 10.0, "m/s^2", of="accelerometers"),
 }
 """By quantity: parameters and derived quantities by their names, everything else in words; x, y and z are places."""
 

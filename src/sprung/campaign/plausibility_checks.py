@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import TYPE_CHECKING
 
+from sprung.campaign.excitation_checks import excitation_sizes
 from sprung.campaign.plausibility import LIMITS, Limits, explain_implausible, suggest_unit
 from sprung.campaign.schema import CampaignFile
 from sprung.units import quantity_of_unit, si_factor
@@ -51,7 +52,13 @@ def check_sizes(parsed: ParsedFile[CampaignFile], problems: Problems) -> None:
     problems
         Takes up what no vehicle has.
     """
-    for place, quantity, value in (*_parameters(parsed), *_of_the_vehicle(parsed), *_of_loads(parsed)):
+    excitations = (getattr(parsed.file, name, None) for name in ("push", "bump"))
+    for place, quantity, value in (
+        *_parameters(parsed),
+        *_of_the_vehicle(parsed),
+        *_of_loads(parsed),
+        *(sized for excitation in excitations if excitation is not None for sized in excitation_sizes(excitation)),
+    ):
         found = explain_implausible(quantity, value)
         if found is not None:
             problems.add(parsed.where(*place), f"{value:g}", *found)

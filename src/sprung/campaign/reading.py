@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tomllib
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -99,6 +100,28 @@ def read_document(
     from sprung.campaign.file_reading import read_campaign  # noqa: PLC0415 (see above)
 
     return read_campaign(document, path, signals or {}, complete, progress)
+
+
+def is_vehicle_file(path: str | os.PathLike[str]) -> bool:
+    """Return whether a path is a vehicle file, with the section ``[parameters]``; a misspelt name counts too.
+
+    Parameters
+    ----------
+    path
+        Of a file or a folder.
+
+    Returns
+    -------
+    bool
+        False of a file that cannot be read, which is reported where it is read.
+    """
+    from sprung.campaign.file_kind import find_parameters_section  # noqa: PLC0415 (see above)
+
+    try:
+        document = tomllib.loads(Path(path).read_bytes().decode("utf-8-sig"))
+    except (OSError, ValueError, RecursionError):
+        return False
+    return find_parameters_section(document) is not None
 
 
 def read_vehicle(path: str | os.PathLike[str]) -> VehicleFile:

@@ -9,6 +9,9 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING, Any
 
+from pydantic import ValidationError
+
+from sprung.campaign.file_kind import VEHICLE_SECTIONS
 from sprung.errors import Problem, did_you_mean
 from sprung.vehicle import FULL, LAYOUTS, STATIONS, UNKNOWN_KEY
 
@@ -47,7 +50,10 @@ def problems_from_validation(
         What the file holds.
     """
     schema = _with_stations_of(document, model.model_json_schema())
-    said = {detail["loc"]: _problem(schema, detail, file, document) for detail in details}
+    said = {
+        detail["loc"]: _problem(schema, detail, file, document, _contradicted_default(model, schema, detail, document))
+        for detail in details
+    }
     # A key that is misspelt is not missing as well, nor does a list lack what is faulty in it.
     meant = [(place[:-1], problem.do) for place, problem in said.items() if "Did you mean" in problem.do]
     inside = {place[:depth] for place in said for depth in range(len(place))}
@@ -67,7 +73,33 @@ def _with_stations_of(document: Mapping[str, Any], node: Any) -> Any:
     return _without_words(node, {name for wheel in STATIONS if wheel not in wheels for name in (wheel, f"pad {wheel}")})
 
 
-def _without_words(node: Any, words: Collection[str]) -> Any:
+def _contradicted_default(
+    model: type[BaseModel], schema: dict[str, Any], detail: ErrorDetails, document: Mapping[str, Any]
+) -> str | None:
+    """Return the default of a faulty key that has a word from a list, if that contradicts the other keys of its entry."""
+    place = detail["loc"]
+    default = _node(schema, place).get("default") if detail["type"] == "literal_error" else None
+    if default is None:
+        return None
+    try:
+        model.model_validate_json(json.dumps(_without(document, place), default=str), strict=True)
+    except ValidationError as error:
+        if any(one["type"] == "value_error" and one["loc"] == place[:-1] for one in error.errors()):
+            return str(default)
+    return None
+
+
+def _without(part: Any, place: Place) -> Any:
+    """Return a part of a document without the key at a place."""
+    first, *rest = place
+    if isinstance(part, list):
+        return [_without(inner, tuple(rest)) if index == first else inner for index, inner in enumerate(part)]
+    if rest:
+        return {**part, first: _without(part[first], tuple(rest))}
+    return {key: inner for key, inner in part.items() if key != first}
+
+
+def _without_words(node: Any, words: Collection[str | None]) -> Any:
     """Return a JSON schema with some words taken out of its lists of allowed ones."""
     if isinstance(node, list):
         return [_without_words(inner, words) for inner in node]
@@ -79,12 +111,17 @@ def _without_words(node: Any, words: Collection[str]) -> Any:
     }
 
 
-def _problem(schema: dict[str, Any], detail: ErrorDetails, file: str, document: Mapping[str, Any]) -> Problem:
+def _problem(
+    schema: dict[str, Any], detail: ErrorDetails, file: str, document: Mapping[str, Any], excluded: str | None
+) -> Problem:
     place, kind = _written(document, detail["loc"]), detail["type"]
     if kind in {"extra_forbidden", UNKNOWN_KEY}:
         where = format_place(file, place, document)
         if place[0] == "drop" and place[-1] == "files":
             return Problem(where, *_SEVERAL_LOGGERS)
+        if place[0] in VEHICLE_SECTIONS and len(place) == 1:
+            do = "Remove it: only a simulation needs it."
+            return Problem(where, f"[{place[0]}], a section of a vehicle file", "a section of a campaign file", do)
         allowed = _node(schema, place[:-1]).get("properties", {})
         found = f"the unknown key '{place[-1]}'"
         return Problem(where, found, "a key that sprung knows", did_you_mean(str(place[-1]), allowed))
@@ -96,7 +133,7 @@ def _problem(schema: dict[str, Any], detail: ErrorDetails, file: str, document: 
         )
     if isinstance(place[-1], int) and "prefixItems" in _node(schema, place[:-1]):
         place = place[:-1]  # a vector is corrected as a whole
-    where, node = format_place(file, place, document), _node(schema, place)
+    where, node = format_place(file, place, document), _without_words(_node(schema, place), {excluded})
     expected = _LENGTHS.get(str(place[-1]), _described(node))
     if kind == "missing" and place == detail["loc"]:
         return Problem(where, "nothing", expected, f"Add {place[-1]} = ... to it.")
@@ -105,7 +142,7 @@ def _problem(schema: dict[str, Any], detail: ErrorDetails, file: str, document: 
     if isinstance(value, dict) and node.get("type") == "array" and len(place) == 1:
         do = f"Write [[{place[0]}]] in double brackets, once for each."
     elif "enum" in node and isinstance(value, str):
-        do = did_you_mean(value, node["enum"])
+        do = did_you_mean(value, node["enum"], listed=True)
     elif isinstance(value, str) and node.get("type") == "number":
         do = "Write a number, without quotes."
     return Problem(where, quote_value(value), expected, do)

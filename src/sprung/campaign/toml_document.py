@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shlex
 import tomllib
 from typing import TYPE_CHECKING, Any
 
@@ -25,7 +26,9 @@ def read_toml(path: Path) -> dict[str, Any]:
     except FileNotFoundError:
         beside = [other.name for other in path.parent.glob("*.toml")]
         do = did_you_mean(path.name, beside).replace("Allowed:", "There are:")
-        if not beside:
+        if not beside and any(other.is_dir() or other.is_file() for other in path.parent.glob("[!.]*")):
+            do = f"Draft it from the recordings: `sprung new {shlex.quote(str(path.parent))}`."
+        elif not beside:
             do = "Correct the path, or write that file: `sprung demo` writes an example to copy."
         raise InputError([Problem(str(path), "no such file", "a campaign file or vehicle file", do)]) from None
     except IsADirectoryError:

@@ -100,8 +100,8 @@ def read_vehicle_file(path: Path) -> VehicleFile:
 
 def _vehicle(parsed: ParsedFile[VehicleFileSchema], name: str, problems: Problems) -> Vehicle | None:
     """Return the vehicle of a file; None, with the problems noted, where it is invalid."""
-    if ("parameters",) in parsed.lost:
-        return None
+    if ("parameters",) in parsed.lost or ("parameters" not in parsed.document and not parsed.complete("parameters")):
+        return None  # the section is faulty as a whole, or misspelt
     # What was written but not understood is a problem already: it must not be called missing as well.
     held = {str(place[1]): 1.0 for place in parsed.lost if place[0] == "parameters"}
     parameters = {**held, **parsed.file.parameters}

@@ -120,7 +120,7 @@ def check_prepared(campaign: Campaign, prepared: Prepared) -> Check:
 def _unread(drop: Drop, faults: Sequence[Fault]) -> DropReport:
     """Report a drop whose recording could not be read."""
     file = drop.recording_name or drop.label
-    codes = tuple(fault.code for fault in faults if fault.where == file or is_within(fault.where, file))
+    codes = tuple(dict.fromkeys(fault.code for fault in faults if fault.where == file or is_within(fault.where, file)))
     kind, title = drop.kind, drop.name or ""
     return DropReport(file, drop.load, None, None, codes, kind=kind, wheels=drop.wheels, name=drop.label, title=title)
 
@@ -140,7 +140,7 @@ def _report(
         load=drop.load,
         start=None if decay is None else decay.events.start,
         end=None if decay is None else decay.end,
-        faults=tuple(fault.code for fault in faults),
+        faults=tuple(dict.fromkeys(fault.code for fault in faults)),
         kind=drop_kind(drop.wheels or observation.wheels, drop.excitation),
         wheels=drop.wheels,
         wheels_seen=merge_dropped_wheels(drop, observation.dropped) if observation.dropped else None,

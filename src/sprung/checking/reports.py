@@ -89,7 +89,7 @@ class DropReport:
     start, end
         Of the decay, as the recording shows it, the same from `check` and in a result; None where no part is used.
     faults
-        Codes.
+        Codes, each once.
     kind
         ``bounce``, ``pitch front``, ``pitch rear``, ``roll left``, ``roll right``, or the wheels by name; of other excitations
         ``push`` or ``pass``, and ``front`` and so on.

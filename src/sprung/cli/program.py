@@ -9,9 +9,9 @@ import traceback
 from sprung.cli import batches, exports, identification, page, recordings, riding, studies  # noqa: F401
 from sprung.cli.app import app
 from sprung.cli.help_text import readable
-from sprung.cli.output import BAD_INPUT, DEFECT, INTERRUPTED, complain
+from sprung.cli.output import BAD_INPUT, DEFECT, INTERRUPTED, REJECTED, complain
 from sprung.cli.signals import interruption_of, report_stop
-from sprung.errors import SprungError
+from sprung.errors import RejectedResultError, SprungError
 
 __all__ = ["app", "run_program"]
 
@@ -34,6 +34,9 @@ def run_program() -> None:
         if leaving.code == INTERRUPTED and (stopped := interruption_of(leaving)) is not None:
             raise SystemExit(report_stop(stopped)) from None
         raise
+    except RejectedResultError as error:
+        complain(readable(f"The result is rejected:\n{error}"))
+        raise SystemExit(REJECTED) from None
     except SprungError as error:
         complain(readable(f"{_headline(error)}\n{error}"))
         raise SystemExit(BAD_INPUT) from None

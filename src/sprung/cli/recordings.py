@@ -13,7 +13,7 @@ import sprung
 from sprung.cli import completion
 from sprung.cli.app import Force, Json, app
 from sprung.cli.output import complain, say, say_json, working
-from sprung.errors import Fault, InputError, Problem, record_failure
+from sprung.errors import Fault, InputError, record_failure
 
 
 @app.command(epilog="Example: [bold]sprung check campaign.toml[/bold]")
@@ -43,9 +43,7 @@ def check(
     with working("reading the recordings") as progress:
         found = sprung.check(campaign, progress=progress)
     if not found.usable:
-        raise InputError(
-            Problem(fault.where, fault.what, "a usable decay in at least one drop", fault.do) for fault in found.faults
-        )
+        raise InputError(fault.as_problem("a usable decay in at least one drop") for fault in found.faults)
     beside = campaign if campaign.is_dir() else campaign.parent
     folder = output or beside / "check"
     written: tuple[Path, ...] = ()

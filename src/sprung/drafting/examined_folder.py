@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import accumulate
@@ -123,7 +124,7 @@ def shows_drops(recordings: Sequence[ExaminedRecording]) -> bool:
 def _require_no_campaign(folder: Path, overwrite: bool) -> None:
     path = folder / CAMPAIGN_FILE
     if path.exists() and not overwrite:
-        do = f"Continue with it (sprung check {path}), or remove it and draft it anew."
+        do = f"Continue with it (`sprung check {shlex.quote(str(path))}`), or remove it and draft it anew."
         raise InputError([Problem(str(path), "a campaign file", "a folder that has none yet", do)])
 
 

@@ -54,7 +54,8 @@ def find_copies(folder: Path, names: Sequence[str]) -> dict[str, str]:
     Returns
     -------
     dict
-        By the name of each copy the file that it is a copy of: of identical files the one whose path says most.
+        By the name of each copy the file that it is a copy of: of identical files that with the
+        shortest path, unless another one's path says something else: ``left/try_2.csv`` rather than ``copy.csv``.
     """
     sizes: defaultdict[int, list[str]] = defaultdict(list)
     for name in names:
@@ -66,6 +67,9 @@ def find_copies(folder: Path, names: Sequence[str]) -> dict[str, str]:
                 alike[hashlib.file_digest(file, "sha256").hexdigest()].append(name)
     found: dict[str, str] = {}
     for own in alike.values():
-        original = max(own, key=lambda name: len(tokens(name)))
+        said = set(tokens(max(own, key=lambda name: len(tokens(name)))))
+        original = min(
+            (name for name in own if set(tokens(name)) <= said), key=lambda name: (name.count("/"), len(name), name)
+        )
         found |= {name: original for name in own if name != original}
     return found

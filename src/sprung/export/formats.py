@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
 
-from sprung.errors import InputError, Problem, did_you_mean
+from sprung.errors import InputError, Problem, RejectedResultError, did_you_mean
 from sprung.export.commonroad_parameters import commonroad
 from sprung.export.file import ExportedFile
 from sprung.export.functional_mockup import fmu
@@ -123,6 +123,8 @@ def export(result: Result, to: str, options: ExportOptions = ExportOptions()) ->
 
     Raises
     ------
+    RejectedResultError
+        If the result is rejected and the format needs a vehicle.
     InputError
         If there is no such format, an option does not belong to it, or the vehicle cannot be put into it; with all reasons.
     """
@@ -143,6 +145,10 @@ def export(result: Result, to: str, options: ExportOptions = ExportOptions()) ->
             result.vehicle  # noqa: B018 (raises what prevents every export)
         if not problems:
             file = _FORMATS[to].write(result, options)
+    except RejectedResultError as error:
+        if not problems:
+            raise
+        problems += error.problems
     except InputError as error:
         problems += error.problems
     if file is None:

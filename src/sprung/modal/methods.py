@@ -148,7 +148,7 @@ def identify_modes(
     problems = Problems()
     if method not in METHODS:
         expected = " or ".join(f"'{name}'" for name in METHODS)
-        problems.add("method", f"'{method}'", expected, did_you_mean(method, METHODS))
+        problems.add("method", f"'{method}'", expected, did_you_mean(method, METHODS, listed=True))
         problems.raise_if_any()
     arrays = check_records(records, rate, method)
     if len(arrays[0]) < 2:

@@ -128,7 +128,8 @@ def _read_arrays(path: Path, checksum: object) -> dict[str, NDArray[Any]]:
     except FileNotFoundError as error:
         _refuse(path, "no such file", "the series of the result beside it", "Copy the whole results folder.", error)
     except _UNREADABLE as error:
-        _refuse(path, f"no series ({error}): cut off or damaged", "the series of a saved result", _REMEDY, error)
+        found = "a file that is no archive of NumPy arrays: cut off, damaged or another file"
+        _refuse(path, found, "the series of a saved result", _REMEDY, error)
     if checksum != arrays_checksum(arrays):
         found = "series that do not belong to this result (their checksum differs)"
         _refuse(path, found, "the series that were written with results.json", _REMEDY)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from sprung.assessment import Verdict
-from sprung.errors import InputError, Problem
+from sprung.errors import InputError, Problem, RejectedResultError
 from sprung.uncertainty import Estimate
 from sprung.vehicle import Vehicle
 
@@ -32,12 +32,14 @@ def identified_vehicle(
 
     Raises
     ------
+    RejectedResultError
+        If the verdict is reject.
     InputError
-        If the verdict is reject, or a parameter is not determined.
+        If a parameter is not determined.
     """
     if verdict.state == "reject":
         do = "Read the reasons of the verdict; measure again, or correct the campaign."
-        raise InputError([Problem(f"result of {name}", "the verdict reject", "accept or doubtful", do)])
+        raise RejectedResultError([Problem(f"result of {name}", "the verdict reject", "accept or doubtful", do)])
     values = {parameter: estimate.value for parameter, estimate in parameters.items() if estimate.value is not None}
     missing = [parameter for parameter in parameters if parameter not in values]
     if missing:

@@ -174,5 +174,5 @@ def _checked_tracks(tracks: str, problems: Problems) -> Tracks:
         if one == tracks:
             return one
     expected = f"one of {', '.join(_TRACKS)}"
-    problems.add(f"{_WHERE}: tracks", f"'{tracks}'", expected, did_you_mean(tracks, _TRACKS))
+    problems.add(f"{_WHERE}: tracks", f"'{tracks}'", expected, did_you_mean(tracks, _TRACKS, listed=True))
     return _TRACKS[0]

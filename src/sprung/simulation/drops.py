@@ -18,6 +18,7 @@ from sprung.campaign import (
     KnownValueLike,
     ModelChoice,
     Push,
+    check_excitation,
     read_vehicle,
 )
 from sprung.errors import Problems
@@ -146,6 +147,8 @@ def simulate(
         record(Bump, "bump", bump or {}, problems) or Bump(),
         gravity,
     )
+    for excitation in (acting.push, acting.bump):
+        check_excitation(excitation, "simulate", problems)
     pads = pads or PadMotion()
     pads.check(problems)
     is_linear = not nonlinear_elements(vehicle.tracks, vehicle.extras)

@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 import math
-import os
 import re
-import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -20,6 +17,7 @@ from sprung.campaign import (
     Drop,
     KnownValueLike,
     ModelChoice,
+    is_vehicle_file,
     read_vehicle,
     resolve_campaign,
 )
@@ -97,7 +95,7 @@ def plan(
     _check_wanted(wanted, problems)
     test: dict[str, object] = {"sensors": sensors, "loads": loads, "drops": drops, "rate": rate, "noise": noise}
     test |= {"duration": duration, "known": known, "model": model}
-    if isinstance(source, Campaign) or not (isinstance(source, Vehicle) or _describes_vehicle(source)):
+    if isinstance(source, Campaign) or not (isinstance(source, Vehicle) or is_vehicle_file(source)):
         for name, value in test.items():
             if value is not None:
                 found = f"{value:g}" if isinstance(value, float | int) else type(value).__name__
@@ -228,14 +226,6 @@ def _terms_of(setup: MeasurementSetup, drops: Sequence[PlannedDrop]) -> tuple[Te
         required = required_gain(len(values), len(TERMS), samples)
         candidates.append(TermCandidate(name, values, term.size({**own, **values}), required))
     return detect_terms(setup, drops, candidates)
-
-
-def _describes_vehicle(path: str | os.PathLike[str]) -> bool:
-    """Whether a path is a vehicle file, with the section ``[parameters]``; an unreadable file is reported when it is read."""
-    try:
-        return "parameters" in tomllib.loads(Path(path).read_bytes().decode("utf-8-sig"))
-    except (OSError, ValueError):
-        return False
 
 
 def _check_wanted(wanted: float, problems: Problems) -> None:

@@ -165,7 +165,8 @@ class Vehicle:
         given = {key: value for key, value in {**(parameters or {}), **named}.items() if value is not None}
         where, problems = f"vehicle {name}", Problems()
         if model not in LAYOUTS:
-            problems.add(where, f"model '{model}'", f"any of {', '.join(LAYOUTS)}", did_you_mean(model, LAYOUTS))
+            do = did_you_mean(model, LAYOUTS, listed=True)
+            problems.add(where, f"model '{model}'", f"any of {', '.join(LAYOUTS)}", do)
             problems.raise_if_any()
         values = complete_parameters(given, LAYOUTS[model], where, problems)
         problems.raise_if_any()

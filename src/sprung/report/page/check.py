@@ -9,7 +9,7 @@ from importlib.metadata import version
 from typing import NamedTuple
 
 from sprung.checking import Check, DropReport, PlottedRecording
-from sprung.errors import Fault
+from sprung.errors import Fault, merge_faults
 from sprung.report.drawing.picture import Picture
 from sprung.report.excitations import excitations_text, limits_text, readings_text, records_text
 from sprung.report.page.environment import ENVIRONMENT
@@ -105,7 +105,7 @@ def _facts(check: Check) -> Iterator[tuple[str, str]]:
     rates = sorted({drop.rate for drop in check.drops if drop.rate is not None})
     if rates:
         yield "Sampling", ", ".join(f"{rate:.6g} Hz" for rate in rates)
-    yield "Faults", str(len(check.faults)) if check.faults else "none"
+    yield "Faults", str(len(merge_faults(check.faults))) if check.faults else "none"
 
 
 def _drops(check: Check) -> Iterator[DropPart]:
@@ -117,7 +117,7 @@ def _drops(check: Check) -> Iterator[DropPart]:
             report=drop,
             limits=limits_text(drop),
             contradiction=_contradiction(drop),
-            faults=tuple((_channel(fault, drop), fault) for fault in check.faults_of(drop)),
+            faults=tuple((_channel(fault, drop), fault) for fault in merge_faults(check.faults_of(drop))),
             pictures=tuple(picture for picture in pictures if picture is not None),
         )
 

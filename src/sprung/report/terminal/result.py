@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from sprung.errors import Fault
+from sprung.errors import Fault, merge_faults
 from sprung.report.page.summary import test_record_of
 from sprung.report.terminal.layout import hanging_text, render_rows, render_table
 from sprung.report.terminal.plan import next_line
@@ -185,9 +185,9 @@ def _count(number: int, thing: str) -> str:
 
 
 def fault_list(faults: Sequence[Fault]) -> RenderableType:
-    """Return the list of faults with their remedies."""
+    """Return the list of faults with their remedies, those of one kind in one entry."""
     lines: list[RenderableType] = [Text("Faults", style="bold")]
-    for fault in faults:
+    for fault in merge_faults(faults):
         text = Text.assemble(f"{fault.where}: ", (fault.code, "yellow"), f": {fault.what}. {fault.do}")
         lines.append(hanging_text("  - ", text))
     return Group(*lines)

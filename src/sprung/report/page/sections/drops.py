@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
-
 from sprung.assessment import motions_of
 from sprung.checking import DropReport
-from sprung.errors import Fault
+from sprung.errors import merge_faults
 from sprung.report.excitations import limits_text, readings_text, records_text
 from sprung.report.page.sections.context import Context
 from sprung.report.pictures.motions import motion_picture, motions_text
@@ -29,7 +27,7 @@ def recordings(result: Result, unfolded: bool) -> Context:
             {
                 "file": drop.label,
                 "caption": f"{drop.kind}, {drop.load}",
-                "warning": "left out" if drop.start is None else ", ".join(dict.fromkeys(drop.faults)),
+                "warning": "left out" if drop.start is None else ", ".join(drop.faults),
                 "limits": _limits(drop),
                 "open": unfolded or drop.name in unfolded_drops,
                 "pictures": [picture for picture in pictures if picture is not None],
@@ -37,7 +35,7 @@ def recordings(result: Result, unfolded: bool) -> Context:
         )
     return {
         "overview": drops_table(result.drops),
-        "faults": _merged(result.faults),
+        "faults": merge_faults(result.faults),
         "drawn": drawn,
         "readings": readings_text(result.drops),
         "record": records_text(result.drops, plural=False),
@@ -55,14 +53,6 @@ def _unfolded_drops(result: Result) -> set[str]:
 def _limits(drop: DropReport) -> str:
     fit = "" if drop.fit_start is None else f" The fit begins at {drop.fit_start:.3f} s ({drop.why_fit})."
     return f"{limits}{fit}" if (limits := limits_text(drop)) else ""
-
-
-def _merged(faults: tuple[Fault, ...]) -> list[Fault]:
-    """Return faults with the places of equal ones merged."""
-    places: defaultdict[tuple[str, str, str], list[str]] = defaultdict(list)
-    for fault in faults:
-        places[fault.code, fault.what, fault.do].append(fault.where)
-    return [Fault(code, ", ".join(where), what, do) for (code, what, do), where in places.items()]
 
 
 def motions(result: Result, unfolded: bool) -> Context:
