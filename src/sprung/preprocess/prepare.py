@@ -27,6 +27,7 @@ from sprung.preprocess.gravity import check_gravity
 from sprung.preprocess.high_pass import undo_high_pass
 from sprung.preprocess.pads import exclude_still_pads, extract_forced_response, is_on_pads
 from sprung.preprocess.release import detect_release, unknown_release
+from sprung.preprocess.rest_only import rest_only_fault
 from sprung.preprocess.spikes import remove_spikes
 from sprung.preprocess.splice import join_splices
 from sprung.progress import Progress, Step, counted, silent
@@ -85,6 +86,10 @@ def prepare(campaign: Campaign, progress: Progress = silent, *, full_rate: bool 
         )
         for drop, recording in zip(campaign.drops, recordings, strict=True)
     ]
+    at_rest = [
+        None if is_on_pads(drop) else rest_only_fault(replace(drop, recording=recording), release, campaign.sensors)
+        for drop, recording, release in zip(campaign.drops, recordings, releases, strict=True)
+    ]
     recordings, releases, sensors = check_gravity(recordings, releases, campaign.sensors)
     # A sensor clips before its drift is removed or its high-pass undone: what it reads then is not within its range.
     clipped = [detect_clipping(recording) for recording in recordings]
@@ -107,7 +112,10 @@ def prepare(campaign: Campaign, progress: Progress = silent, *, full_rate: bool 
     names = counted(progress, "finding the decays", unique_drop_names(drops))
     for i, name in enumerate(names):
         drop, release = drops[i], releases[i]
-        if is_on_pads(drop):
+        decay: FreeDecay | Fault
+        if fault := at_rest[i]:
+            decay = fault
+        elif is_on_pads(drop):
             decay = extract_forced_response(corrected, drop, name, clipped[i])
         else:
             decay = extract_decay(corrected, drop, name, release, suspension, clipped[i])
