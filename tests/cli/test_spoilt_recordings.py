@@ -132,6 +132,19 @@ def test_a_recording_of_nothing_but_rest_is_refused(tmp_path: Path) -> None:
     assert "usable decay in at least one drop" in text.err
 
 
+def test_a_script_finds_the_drops_that_check_leaves_out(folder: Folder) -> None:
+    """The exit status says only that something is usable, as docs/commands.md states."""
+    folder.lines(lambda lines: lines[:11])
+    said = run("check", folder.path, "--json", "--no-page")
+    assert said.status == 0
+    left_out = [drop for drop in said.json["drops"] if drop["start"] is None]
+    assert [(drop["file"], drop["end"], drop["faults"]) for drop in left_out] == [
+        ("empty_bounce.csv", None, ["no-decay"])
+    ]
+    assert len(said.json["drops"]) > 1
+    assert [fault["code"] for fault in said.json["faults"]] == ["no-decay"]
+
+
 @pytest.mark.slow
 def test_front_drops_alone(tmp_path: Path) -> None:
     folder = copy_sedan(tmp_path / "front", ("empty_pitch_front", "loaded_pitch_front"))
