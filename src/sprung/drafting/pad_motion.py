@@ -4,19 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
-
 from sprung.drafting.quantity_names import is_pad_named
-from sprung.drafting.release_detection import Averages, noise_of
-
-_PART = 0.02
-"""Part of the largest motion of any displacement in a recording by which a pad moves at least."""
-
-_LEAST = 2e-4
-"""m by which a pad moves at least."""
-
-_NOISE = 12.0
-"""Standard deviations of its noise by which a pad moves at least."""
+from sprung.drafting.release_detection import Averages
+from sprung.preprocess import find_moving_pads
 
 
 def moving_pads(averages: Averages, channels: Sequence[str]) -> tuple[str, ...]:
@@ -33,10 +23,5 @@ def moving_pads(averages: Averages, channels: Sequence[str]) -> tuple[str, ...]:
     -------
     tuple of str
     """
-    if averages.values.shape[1] < 3:
-        return ()
-    sizes = np.ptp(averages.values, axis=1)
-    least = np.maximum(max(_LEAST, _PART * float(sizes.max(initial=0.0))), _NOISE * noise_of(averages.values)[:, 0])
-    return tuple(
-        name for name, size, limit in zip(channels, sizes, least, strict=True) if is_pad_named(name) and size > limit
-    )
+    moves = find_moving_pads(averages.values).tolist()
+    return tuple(name for name, moving in zip(channels, moves, strict=True) if is_pad_named(name) and moving)

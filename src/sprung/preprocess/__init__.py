@@ -15,6 +15,7 @@ from sprung.preprocess.first_motion import (
 from sprung.preprocess.flight import find_flights
 from sprung.preprocess.high_pass import differentiate_by_cutoff, is_ac_coupled
 from sprung.preprocess.landing import find_steepest_rise
+from sprung.preprocess.pads import find_moving_pads
 from sprung.preprocess.prepare import Prepared, exclude_drops, prepare
 from sprung.preprocess.release import Release, detect_release, unknown_release
 from sprung.preprocess.sensor_noise import Moments, SensorNoise, estimate_sensor_noise, pool_moments
@@ -44,6 +45,7 @@ __all__ = [
     "exclude_drops",
     "extract_slow_motion",
     "find_flights",
+    "find_moving_pads",
     "find_slower_drops",
     "find_steepest_rise",
     "is_ac_coupled",

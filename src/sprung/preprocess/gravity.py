@@ -106,7 +106,7 @@ def check_gravity(
     if not faults:
         return list(recordings), list(releases), tuple(sensors)
     factors = np.where(implausible, np.nan, factors * np.where(inverted, -1.0, 1.0))
-    changed = [_scale_recording(recording, factors) for recording in recordings]
+    changed = [scale_recording(recording, factors) for recording in recordings]
     changed[0] = replace(changed[0], faults=(*changed[0].faults, *_group_faults(faults)))
     return (
         changed,
@@ -214,7 +214,20 @@ def _joint(group: Sequence[Fault]) -> Fault:
     return Fault(first.code, where, what, first.do.replace(" for it ", " for them "))
 
 
-def _scale_recording(recording: Recording, factors: Real) -> Recording:
+def scale_recording(recording: Recording, factors: Real) -> Recording:
+    """Scale the channels of a recording.
+
+    Parameters
+    ----------
+    recording
+        As it was read.
+    factors
+        Dimensionless, shape (channel,); NaN leaves a channel out.
+
+    Returns
+    -------
+    Recording
+    """
     scales = zip(recording.full_scale, factors.tolist(), strict=True) if recording.full_scale else ()
     return replace(
         recording,

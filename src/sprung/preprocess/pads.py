@@ -16,7 +16,17 @@ from sprung.preprocess.extraction import clipping_faults, find_end, find_stated_
 from sprung.preprocess.release import unknown_release
 from sprung.vehicle import Sensor, Wheel
 
+Real = NDArray[np.float64]
 Flags = NDArray[np.bool_]
+
+_PART = 0.02
+"""Part of the largest motion of any displacement in a recording by which a pad moves at least."""
+
+_LEAST = 2e-4
+"""m by which a pad moves at least."""
+
+_NOISE = 12.0
+"""Standard deviations of its noise by which a pad moves at least."""
 
 _SHORTEST = 4.0
 """s: a shorter record has hardly a line below the frequencies of a body."""
@@ -25,6 +35,28 @@ _SHORTEST = 4.0
 def is_on_pads(drop: DropTest) -> bool:
     """Return whether pads drove the vehicle."""
     return drop.excitation == "pads"
+
+
+def find_moving_pads(displacements: Real) -> Flags:
+    """Find the pads that move.
+
+    Parameters
+    ----------
+    displacements
+        All of a recording, m, shape (channel, time).
+
+    Returns
+    -------
+    ndarray
+        Shape (channel,).
+    """
+    if displacements.shape[1] < 3:
+        return np.zeros(len(displacements), dtype=np.bool_)
+    sizes = np.ptp(displacements, axis=1)
+    # Second differences of white noise have six times its variance.
+    second = np.median(np.abs(np.diff(displacements, 2, axis=1)), axis=1)
+    noise = second / (0.6745 * np.sqrt(6.0))
+    return np.asarray(sizes > np.maximum(max(_LEAST, _PART * float(sizes.max(initial=0.0))), _NOISE * noise))
 
 
 def exclude_still_pads(recording: Recording, drop: DropTest, sensors: Sequence[Sensor]) -> Recording:

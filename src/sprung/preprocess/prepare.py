@@ -25,11 +25,13 @@ from sprung.preprocess.exclusion import exclude_copies, exclude_flat_channels
 from sprung.preprocess.extraction import extract_decay, pool_suspension_forces
 from sprung.preprocess.gravity import check_gravity
 from sprung.preprocess.high_pass import undo_high_pass
+from sprung.preprocess.pad_consistency import add_moving_pads, check_pad_sensors
 from sprung.preprocess.pads import exclude_still_pads, extract_forced_response, is_on_pads
 from sprung.preprocess.release import detect_release, unknown_release
 from sprung.preprocess.rest_only import rest_only_fault
 from sprung.preprocess.spikes import remove_spikes
 from sprung.preprocess.splice import join_splices
+from sprung.preprocess.wheel_displacement import exclude_other_displacements
 from sprung.progress import Progress, Step, counted, silent
 
 
@@ -71,10 +73,11 @@ def prepare(campaign: Campaign, progress: Progress = silent, *, full_rate: bool 
     whole = [recording if full_rate else decimate(recording) for recording in join_splices(campaign.recordings)]
     despiked = [remove_spikes(recording) for recording in counted(progress, stage, tuple(whole))]
     recordings = exclude_copies([align_loggers(recording) for recording, _ in despiked], campaign.drops)
-    recordings = [
-        exclude_still_pads(recording, drop, campaign.sensors)
-        for recording, drop in zip(recordings, campaign.drops, strict=True)
+    stated = [
+        add_moving_pads(replace(drop, recording=recording), campaign.sensors)
+        for drop, recording in zip(campaign.drops, recordings, strict=True)
     ]
+    recordings = [exclude_still_pads(drop.recording, drop, campaign.sensors) for drop in stated]
     recordings = [exclude_flat_channels(recording) for recording in recordings]
     progress(Step("looking for wrong signs, units and saturation in the recordings"))
     recordings = [check_full_scale(recording, campaign.sensors) for recording in recordings]
@@ -86,6 +89,10 @@ def prepare(campaign: Campaign, progress: Progress = silent, *, full_rate: bool 
         )
         for drop, recording in zip(campaign.drops, recordings, strict=True)
     ]
+    stated = [replace(drop, recording=recording) for drop, recording in zip(stated, recordings, strict=True)]
+    recordings = check_pad_sensors(stated, campaign.sensors)
+    stated = [replace(drop, recording=recording) for drop, recording in zip(stated, recordings, strict=True)]
+    recordings = exclude_other_displacements(stated, campaign.sensors)
     at_rest = [
         None if is_on_pads(drop) else rest_only_fault(replace(drop, recording=recording), release, campaign.sensors)
         for drop, recording, release in zip(campaign.drops, recordings, releases, strict=True)
@@ -103,7 +110,7 @@ def prepare(campaign: Campaign, progress: Progress = silent, *, full_rate: bool 
         {} if drop.is_driven else detect_dropped_wheels(recording, release, sensors)
         for drop, recording, release in zip(campaign.drops, recordings, releases, strict=True)
     ]
-    drops = [replace(drop, recording=own) for drop, own in zip(campaign.drops, recordings, strict=True)]
+    drops = [replace(drop, recording=own) for drop, own in zip(stated, recordings, strict=True)]
     drops = _correct_dropped_wheels(drops, dropped)
     corrected = replace(campaign, drops=tuple(drops), sensors=sensors)
 
