@@ -118,14 +118,42 @@ def test_a_wheel_sensor_upside_down_does_not_blame_the_pad(sound: Campaign) -> N
     assert not faults_of(prepare(scaled(sound, "wheel_fl", -1.0)))
 
 
-def test_exchanged_pads_are_named(sound: Campaign) -> None:
-    def on(place: Any) -> Callable[[Sensor], Sensor]:
-        return lambda one: replace(one, on=place)
+def exchanged(campaign: Campaign, *kinds: str) -> Campaign:
+    """State the channels of some kinds at the opposite place of the front axle."""
 
-    names = {"pad_fl": "pad fr", "force_fl": "pad fr", "pad_fr": "pad fl", "force_fr": "pad fl"}
-    spoilt = restated(sound, {channel: on(place) for channel, place in names.items()})
-    first = replace(spoilt, drops=spoilt.drops[:1])
-    (fault,) = faults_of(prepare(first))
+    def opposite(one: Sensor) -> Sensor:
+        place = one.on.replace("fl", "fr") if one.on and "fl" in one.on else (one.on or "").replace("fr", "fl")
+        return replace(one, on=place)  # type: ignore[arg-type]
+
+    return restated(campaign, {f"{kind}_{wheel}": opposite for kind in kinds for wheel in ("fl", "fr")})
+
+
+@pytest.mark.parametrize("kinds", [("pad", "force"), ("wheel",)])
+def test_exchanged_pads_or_wheels_are_told_by_the_body_and_corrected(sound: Campaign, kinds: tuple[str, ...]) -> None:
+    prepared, right = prepare(exchanged(sound, *kinds)), prepare(sound)
+    (fault,) = faults_of(prepared)
+    assert fault.code == "exchanged"
+    assert {*fault.where.split(", ")} == {f"{kind}_{wheel}" for kind in kinds for wheel in ("fl", "fr")}
+    channels = [one.channel for one in sound.sensors]
+    swaps = {channels.index(f"{kind}_fl"): channels.index(f"{kind}_fr") for kind in kinds}
+    swaps |= {second: first for first, second in swaps.items()}
+    order = [swaps.get(channel, channel) for channel in range(len(channels))]
+    for own, sound_decay in zip(prepared.decays, right.decays, strict=True):
+        np.testing.assert_array_equal(own.values, sound_decay.values[order])
+        assert own.pads == sound_decay.pads
+
+
+def test_without_sensors_of_the_body_exchanged_pads_are_only_named(sound: Campaign) -> None:
+    kept = [n for n, one in enumerate(sound.sensors) if one.on != "body"]
+    bare = replace(
+        sound.with_recordings(
+            replace(own, values=own.values[kept], channels=tuple(own.channels[n] for n in kept))
+            for own in sound.recordings
+        ),
+        sensors=tuple(sound.sensors[n] for n in kept),
+    )
+    spoilt = exchanged(bare, "pad", "force")
+    (fault,) = faults_of(prepare(replace(spoilt, drops=spoilt.drops[:1])))
     assert (fault.code, fault.where) == ("exchanged", "wheel_fl, wheel_fr")
     assert "wheel_fl, stated on fl, follows pad_fl, stated on pad fr" in fault.what
     # A pad that stands still by its statement moves in the second test.

@@ -94,7 +94,9 @@ def displacements_of_pads(sensors: Sequence[Sensor]) -> tuple[PadDisplacement, .
     return tuple(PadDisplacement(channel, wheel) for wheel, channel in found.items())
 
 
-def estimate_pad_responses(drops: Sequence[DropTest], sensors: Sequence[Sensor]) -> tuple[PadResponse, ...]:
+def estimate_pad_responses(
+    drops: Sequence[DropTest], sensors: Sequence[Sensor], *, of_body: bool = False
+) -> tuple[PadResponse, ...]:
     """Estimate the response of wheels and pad forces to the pads, by least squares over the lines of all tests on pads.
 
     Parameters
@@ -103,12 +105,14 @@ def estimate_pad_responses(drops: Sequence[DropTest], sensors: Sequence[Sensor])
         Tests on pads, with their recordings.
     sensors
         One for each channel.
+    of_body
+        Whether to estimate the response of the body's accelerometers instead, to which several pads contribute.
 
     Returns
     -------
     tuple of PadResponse
-        Of the accelerometers on wheels and the forces of pads that the pads explain; none where the displacements of all pads
-        that move are not measured, or do not differ enough.
+        Of the accelerometers on wheels and the forces of pads, of which one pad explains most; none where the displacements
+        of all pads that move are not measured, or do not differ enough.
     """
     pads = displacements_of_pads(sensors)
     drops = [drop for drop in drops if _measures_all(drop, pads)]
@@ -122,10 +126,16 @@ def estimate_pad_responses(drops: Sequence[DropTest], sensors: Sequence[Sensor])
     responses = (
         _response(drops, pads, channel, sensor)
         for channel, sensor in enumerate(sensors)
-        if (sensor.wheel is not None and sensor.reads_gravity)
-        or (sensor.pad is not None and sensor.quantity == "force")
+        if ((sensor.on == "body" and sensor.reads_gravity) if of_body else _is_over_one_pad(sensor))
     )
-    return tuple(own for own in responses if own is not None and own.share.max() > _EXPLAINED / 2)
+    return tuple(own for own in responses if own is not None and (of_body or own.share.max() > _EXPLAINED / 2))
+
+
+def _is_over_one_pad(sensor: Sensor) -> bool:
+    """Return whether a sensor reads what one pad moves or feels."""
+    return (sensor.wheel is not None and sensor.reads_gravity) or (
+        sensor.pad is not None and sensor.quantity == "force"
+    )
 
 
 def _measures_all(drop: DropTest, pads: Iterable[PadDisplacement]) -> bool:

@@ -26,6 +26,7 @@ from sprung.preprocess.extraction import extract_decay, pool_suspension_forces
 from sprung.preprocess.gravity import check_gravity
 from sprung.preprocess.high_pass import undo_high_pass
 from sprung.preprocess.pad_consistency import add_moving_pads, check_pad_sensors
+from sprung.preprocess.pad_exchange import exchange_opposite_channels
 from sprung.preprocess.pads import exclude_still_pads, extract_forced_response, is_on_pads
 from sprung.preprocess.release import detect_release, unknown_release
 from sprung.preprocess.rest_only import rest_only_fault
@@ -73,10 +74,8 @@ def prepare(campaign: Campaign, progress: Progress = silent, *, full_rate: bool 
     whole = [recording if full_rate else decimate(recording) for recording in join_splices(campaign.recordings)]
     despiked = [remove_spikes(recording) for recording in counted(progress, stage, tuple(whole))]
     recordings = exclude_copies([align_loggers(recording) for recording, _ in despiked], campaign.drops)
-    stated = [
-        add_moving_pads(replace(drop, recording=recording), campaign.sensors)
-        for drop, recording in zip(campaign.drops, recordings, strict=True)
-    ]
+    stated = [replace(drop, recording=recording) for drop, recording in zip(campaign.drops, recordings, strict=True)]
+    stated = [add_moving_pads(drop, campaign.sensors) for drop in exchange_opposite_channels(stated, campaign.sensors)]
     recordings = [exclude_still_pads(drop.recording, drop, campaign.sensors) for drop in stated]
     recordings = [exclude_flat_channels(recording) for recording in recordings]
     progress(Step("looking for wrong signs, units and saturation in the recordings"))
