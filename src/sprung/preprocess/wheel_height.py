@@ -60,8 +60,7 @@ def detect_contact(
     """
     last, shown = release.sample, set()
     for wheel in {sensor.wheel for sensor in sensors if sensor.wheel is not None}:
-        fell = wheel in dropped
-        above = _height_of(wheel, values, rate, release, sensors, height if fell else 0.0, latest)
+        above = _height_of(wheel, values, rate, release, sensors, height if wheel in dropped else 0.0, latest)
         if above is None:
             continue
         shown.add(wheel)

@@ -27,7 +27,7 @@ def exchanged_sides(campaign: Campaign, wheelbase: float) -> Iterator[CommonCaus
                 f"the {one} and the {two} wheels are exchanged in all of these drops: both the body and the wheels' sensors "
                 "show the others to have fallen. Their wheels were exchanged"
             )
-            do = f"Exchange {one} and {two} in wheels = [...] of these drops, or in the names of all sensors."
+            do = f"Exchange {one} and {two} in wheels = [...] of these drops."
             yield Fault("wheels", join_names(names), what, do), replace(campaign, drops=drops)
         changed, channels = with_stations(campaign, other)
         if channels:
@@ -48,6 +48,6 @@ def exchanged_sides(campaign: Campaign, wheelbase: float) -> Iterator[CommonCaus
                 f"{one} and {two} of all sensors are exchanged: the body and the wheels' sensors agree with each other and "
                 f"show the other {where} to have fallen than the drops say. All sensors were exchanged"
             )
-            do = f"Exchange {one} and {two} of all sensors, or in wheels = [...] of all drops."
+            do = f"Exchange {one} and {two} in the places (on, position) of all sensors."
             both = (*body, *channels)
             yield Fault("mirrored", join_names(both), what, do), changed

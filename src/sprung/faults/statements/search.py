@@ -191,8 +191,8 @@ def _most_likely(campaign: Campaign, explaining: Sequence[CommonCause]) -> Commo
         return fault, changed
     (first, changed), *others = alike
     if all("left" in other.do for other, _ in alike):
-        also = "; or ".join(other.do.rstrip(".") for other, _ in others)
-        return replace(first, do=f"{first.do} The recordings cannot tell whether: {also}."), changed
+        also = "; or ".join(f"{other.do[0].lower()}{other.do[1:].rstrip('.')}" for other, _ in others)
+        return replace(first, do=f"{first.do.rstrip('.')}; or {also}: the recordings cannot tell these apart."), changed
     raise InputError([_undecided(campaign, [other for other, _ in alike])])
 
 
