@@ -78,8 +78,8 @@ def is_right(result: sprung.Result, truth: Vehicle, *terms: str) -> None:
     """Check the terms, if some are given, that no sensor is blamed, and every parameter that has a value."""
     assert not terms or {*result.fit.model} == {*terms}
     assert not result.faults
-    for name, true in truth.parameters.items():
-        found = result.parameters[name]
+    for name, found in result.parameters.items():
+        true = truth.parameters[name]
         if found.value is not None and found.std:
             assert abs(found.value - true) < 4 * found.std, name
 

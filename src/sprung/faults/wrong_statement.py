@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 from sprung.faults.campaign.known_quantity import known_quantities, none_of, restated
 from sprung.faults.campaign.load_frame import load_frames
@@ -35,26 +35,35 @@ def wrong_statement(base: CandidateFit) -> tuple[Hypothesis | None, int]:
     fits
         How many were made.
     """
-    promising = sorted(
-        (
-            hypothesis
-            for hypothesis in (*load_frames(base), *known_quantities(base), *loosened_statements(base))
-            if _leaves_little(base, hypothesis, SHARE) and base.table.cost - hypothesis.table.cost > SIGNIFICANT
-        ),
-        key=lambda hypothesis: hypothesis.score(),
-    )[:_MOST]
-    confirmed = sorted(_confirmed_wholly(base, promising), key=lambda hypothesis: hypothesis.score())
+    # What has no number of its own, or stands under what is known, is likelier than the mass of a load or the wheelbase.
+    fits, confirmed = 0, list[Hypothesis]()
+    for statements in (lambda: (*load_frames(base), *known_quantities(base)), lambda: loosened_statements(base)):
+        promising = _promising(base, statements())
+        confirmed = sorted(_confirmed_wholly(base, promising), key=lambda hypothesis: hypothesis.score())
+        fits += len(promising)
+        if confirmed:
+            break
     if not confirmed:
-        return None, len(promising)
+        return None, fits
     best, alike = confirmed[0], SIGNIFICANT * confirmed[0].candidate.fit.overdispersion
     rivals = [one for one in confirmed[1:] if one.free <= best.free and one.score() - best.score() < alike]
     if not rivals:
-        return with_found_value(base, restated(base, best)), len(promising)
+        return with_found_value(base, restated(base, best)), fits
     none = none_of(base, [best, *rivals])
     if none is None:
-        return None, len(promising)
+        return None, fits
     found = _confirmed_wholly(base, [none])
-    return (restated(base, found[0]) if found else None), len(promising) + 1
+    return (restated(base, found[0]) if found else None), fits + 1
+
+
+def _promising(base: CandidateFit, hypotheses: Iterable[Hypothesis]) -> list[Hypothesis]:
+    """Return the likeliest of some hypotheses that may explain the recordings wholly, by some steps of their fits."""
+    promising = (
+        hypothesis
+        for hypothesis in hypotheses
+        if _leaves_little(base, hypothesis, SHARE) and base.table.cost - hypothesis.table.cost > SIGNIFICANT
+    )
+    return sorted(promising, key=lambda hypothesis: hypothesis.score())[:_MOST]
 
 
 def _confirmed_wholly(base: CandidateFit, hypotheses: Sequence[Hypothesis]) -> list[Hypothesis]:

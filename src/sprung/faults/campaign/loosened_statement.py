@@ -53,7 +53,7 @@ def with_found_value(base: CandidateFit, hypothesis: Hypothesis) -> Hypothesis:
         Once it is confirmed.
     """
     stated, found = base.campaign, hypothesis.candidate
-    place = hypothesis.fault.where
+    place = hypothesis.fault.where if hypothesis.fault.code == "known" else ""
     for load in stated.loads:
         if place == f"load '{load.name}'":
             loose = next(one for one in found.campaign.loads if one.name == load.name)
