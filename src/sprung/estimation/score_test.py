@@ -51,7 +51,7 @@ class ScoreTest:
     def determined(self) -> NDArray[np.bool_]:
         """Of which unknowns the records have information beside the parameters, shape (unknown,)."""
         least = _DETERMINED * np.maximum(self.own_information, np.finfo(float).tiny)
-        return np.asarray(np.diag(self.information) > least)
+        return np.asarray((self.own_information > 0) & (np.diag(self.information) > least))
 
     @property
     def values(self) -> Real:

@@ -141,9 +141,9 @@ class ChannelPrediction:
         every = self.candidate.campaign.layout.wheels
         gains = []
         for decay in self.decays:
-            drop = drops[decay.file]
+            drop = drops.get(decay.file)  # not one that the candidate leaves out
             needed = every if self.sensor.on == "body" else (self.sensor.wheel,)
-            if drop.excitation == "drop" and drop.height and {*needed} <= {*drop.wheels}:
+            if drop and drop.excitation == "drop" and drop.height and {*needed} <= {*drop.wheels}:
                 end = decay.values[self.channel, -max(int(DRIFT_SPAN * decay.rate), 1) :].mean()
                 gains.append(float(decay.rest.level[self.channel] - end) / drop.height)
         return float(np.median(gains)) if gains else np.nan
