@@ -70,7 +70,7 @@ def _fit_corrected(run: Analysis, structure: ModelStructure, progress: Progress)
     found = run
     # Where a tyre seems to be on the ground too early, the decays begin where the correction explained them; but where a term
     # explains what is left, it shows in the samples before.
-    for decays in (run.prepared.decays, _begun_as(run.corrected[-1].candidate.decays, run.prepared.decays)):
+    for decays in (run.prepared.decays, begun_no_earlier(run.corrected[-1].candidate.decays, run.prepared.decays)):
         found = replace(run, search=_near_confirmed(run, structure, decays, progress), fits=found.fits)
         # What a model leaves that lacks something says nothing of the numbers of a correction.
         is_noise = is_explained(found.decays, found.fit)
@@ -122,9 +122,21 @@ def _near_confirmed(
     return near.recorded(needed, fitted=True, taken=True)
 
 
-def _begun_as(fitted: Sequence[FreeDecay], decays: Sequence[FreeDecay]) -> tuple[FreeDecay, ...]:
-    """Let decays begin no earlier than those that a correction explains."""
-    starts = {decay.file: decay.start for decay in fitted}
+def begun_no_earlier(others: Sequence[FreeDecay], decays: Sequence[FreeDecay]) -> tuple[FreeDecay, ...]:
+    """Let decays begin no earlier than others of the same recordings, those that a correction explains say.
+
+    Parameters
+    ----------
+    others
+        Of some of the recordings.
+    decays
+        Of them and of further ones, which stay.
+
+    Returns
+    -------
+    tuple of FreeDecay
+    """
+    starts = {decay.file: decay.start for decay in others}
     return tuple(decay.shifted(max(decay.samples_to(starts.get(decay.file, decay.start)), 0)) for decay in decays)
 
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from sprung.analysis.analysis import MOST_RESTARTS, Analysis
-from sprung.analysis.baseline import converged, explains_beginnings
+from sprung.analysis.baseline import begun_no_earlier, converged, explains_beginnings
 from sprung.analysis.correcting import restart_corrected
 from sprung.analysis.first_term import explaining_term, rivalling_term
 from sprung.analysis.on_pads import has_pads
@@ -238,18 +238,12 @@ def _with_base(run: Analysis, consistency: Consistency) -> tuple[Analysis, Candi
             if SEPARATE_TRACKS not in needed_terms(ModelSearch(larger, base.fit, decays)):
                 larger = linear
         # A vehicle that is wrong may seem to be on the ground before it is: no hypothesis explains what it does in the air.
-        decays = _begun_no_earlier(run.decays, run.prepared.decays)
-        if any(other is not decay for other, decay in zip(decays, run.decays, strict=True)):
+        decays = begun_no_earlier([decay for decay in run.prepared.decays if not decay.is_driven], run.decays)
+        if any(other.start > decay.start for other, decay in zip(decays, run.decays, strict=True)):
             return replace(run, fits=run.fits + 1), _fit_of(larger, decays, run.fit)
     if larger.names == structure.names:
         return run, CandidateFit.of(structure, run.decays, run.fit)
     return replace(run, fits=run.fits + 1), _fit_of(larger, run.decays, run.fit)
-
-
-def _begun_no_earlier(decays: Sequence[FreeDecay], prepared: Sequence[FreeDecay]) -> tuple[FreeDecay, ...]:
-    """Let decays of drops begin no earlier than the recordings alone show every tyre to be on the ground."""
-    later = [0 if decay.is_driven else decay.samples_to(one.start) for decay, one in zip(decays, prepared, strict=True)]
-    return tuple(decay.shifted(shift) if shift > 0 else decay for decay, shift in zip(decays, later, strict=True))
 
 
 def _fit_of(structure: ModelStructure, decays: Sequence[FreeDecay], before: FitResult) -> CandidateFit:

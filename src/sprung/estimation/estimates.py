@@ -12,7 +12,7 @@ from sprung.display import shown
 from sprung.estimation.statistics import FitStatistics
 from sprung.estimation.subspace import canonical_basis
 from sprung.uncertainty import NORMAL_95, Estimate, KnownValue, Ratio
-from sprung.vehicle import DERIVED, LOAD_MASS, evaluate_quantity, is_nuisance, parameter_of
+from sprung.vehicle import DERIVED, LOAD_MASS, UNITS_PER_MASS, evaluate_quantity, is_nuisance, parameter_of
 from sprung.vibration import largest_entry
 
 Real = NDArray[np.float64]
@@ -27,16 +27,6 @@ _HARDLY = (
     "hardly changes these recordings; drops that excite other motions, more channels, or knowing one of them beforehand "
     "would determine it"
 )
-
-_PER_MASS = {
-    "kg": "1",
-    "kg m^2": "m^2",
-    "N/m": "1/s^2",
-    "N s/m": "1/s",
-    "N": "m/s^2",
-    "N m": "m^2/s^2",
-    "N m s": "m^2/s",
-}
 
 
 @shown
@@ -168,7 +158,7 @@ def scale_of(fit: FitStatistics) -> Scale:
             own = (own - fit.values[i] * mass_direction) / total
             std = fit.spread(own, fit.size(name) / total)
             if std is not None:
-                per_total_mass[name] = Ratio(ratio, std, _PER_MASS[parameter_of(name).unit])
+                per_total_mass[name] = Ratio(ratio, std, UNITS_PER_MASS[parameter_of(name).unit])
         elif not is_nuisance(name):
             std = fit.spread(own, fit.size(name))
         else:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from itertools import chain
 
 from sprung.faults.campaign.known_quantity import known_quantities, none_of, restated
 from sprung.faults.campaign.load_frame import load_frames
-from sprung.faults.campaign.loosened_statement import loosened_statements, with_found_value
+from sprung.faults.campaign.loosened_statement import loosened_statements
 from sprung.faults.candidate_fit import CandidateFit
 from sprung.faults.consistency import SHARE, SIGNIFICANT
 from sprung.faults.hypothesis import Hypothesis
@@ -37,8 +38,8 @@ def wrong_statement(base: CandidateFit) -> tuple[Hypothesis | None, int]:
     """
     # What has no number of its own, or stands under what is known, is likelier than the mass of a load or the wheelbase.
     fits, confirmed = 0, list[Hypothesis]()
-    for statements in (lambda: (*load_frames(base), *known_quantities(base)), lambda: loosened_statements(base)):
-        promising = _promising(base, statements())
+    for statements in (chain(load_frames(base), known_quantities(base)), loosened_statements(base)):
+        promising = _promising(base, statements)
         confirmed = sorted(_confirmed_wholly(base, promising), key=lambda hypothesis: hypothesis.score())
         fits += len(promising)
         if confirmed:
@@ -48,7 +49,7 @@ def wrong_statement(base: CandidateFit) -> tuple[Hypothesis | None, int]:
     best, alike = confirmed[0], SIGNIFICANT * confirmed[0].candidate.fit.overdispersion
     rivals = [one for one in confirmed[1:] if one.free <= best.free and one.score() - best.score() < alike]
     if not rivals:
-        return with_found_value(base, restated(base, best)), fits
+        return restated(base, best), fits
     none = none_of(base, [best, *rivals])
     if none is None:
         return None, fits

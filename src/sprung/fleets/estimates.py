@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from sprung.batch import DONE, Row
 from sprung.display import shown
-from sprung.fleets.scale import PER_TOTAL_MASS, UNDETERMINED, UNITS_PER_MASS, fleet_names, without_scale
-from sprung.vehicle import DERIVED, PARAMETERS
+from sprung.fleets.scale import PER_TOTAL_MASS, UNDETERMINED, fleet_names, without_scale
+from sprung.vehicle import DERIVED, PARAMETERS, UNITS_PER_MASS
 
 Real = NDArray[np.float64]
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,17 +14,6 @@ Real = NDArray[np.float64]
 
 PER_TOTAL_MASS = "/total_mass"
 """End of the name of a parameter that is divided by the total mass of its vehicle."""
-
-UNITS_PER_MASS: Mapping[str, str] = {
-    "kg": "1",
-    "kg m^2": "m^2",
-    "N/m": "1/s^2",
-    "N s/m": "1/s",
-    "N": "m/s^2",
-    "N m": "m^2/s^2",
-    "N m s": "m^2/s",
-}
-"""Unit of a parameter divided by a mass, by its own unit."""
 
 UNDETERMINED = 1.0
 """Standard uncertainty, relative, from which on a test does not determine a quantity."""

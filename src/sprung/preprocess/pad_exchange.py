@@ -44,9 +44,13 @@ def exchange_opposite_channels(drops: Sequence[DropTest], sensors: Sequence[Sens
     """
     on_pads = [add_moving_pads(drop, sensors) for drop in drops if is_on_pads(drop)]
     responses = [own for own in estimate_pad_responses(on_pads, sensors) if sensors[own.channel].wheel is not None]
+    crossed = list(_crossed(responses, sensors))
+    if not crossed:
+        return list(drops)
+    of_body = estimate_pad_responses(on_pads, sensors, of_body=True)
     order, faults = np.arange(len(sensors)), []
-    for first, second in _crossed(responses, sensors):
-        side = _side_shown_by_body(estimate_pad_responses(on_pads, sensors, of_body=True), sensors, first, second)
+    for first, second in crossed:
+        side = _side_shown_by_body(of_body, sensors, first, second)
         if not side:
             continue
         pairs = list(_channels_at(sensors, first, second, of_pads=side < 0))

@@ -119,12 +119,13 @@ def estimate_pad_responses(
     pads = tuple(pad for pad in pads if any(pad.wheel in drop.wheels for drop in drops))
     if not pads:
         return ()
-    inputs = np.concatenate([_displacements(drop, pads) for drop in drops])
+    lines = [_displacements(drop, pads) for drop in drops]
+    inputs = np.concatenate(lines)
     size = np.sqrt((np.abs(inputs) ** 2).sum(axis=0))
     if not size.all() or _is_singular(inputs / size):
         return ()
     responses = (
-        _response(drops, pads, channel, sensor)
+        _response(drops, lines, pads, channel, sensor)
         for channel, sensor in enumerate(sensors)
         if ((sensor.on == "body" and sensor.reads_gravity) if of_body else _is_over_one_pad(sensor))
     )
@@ -164,14 +165,18 @@ def _displacements(drop: DropTest, pads: Iterable[PadDisplacement]) -> Complex:
 
 
 def _response(
-    drops: Sequence[DropTest], pads: Sequence[PadDisplacement], channel: int, sensor: Sensor
+    drops: Sequence[DropTest],
+    displacements: Sequence[Complex],
+    pads: Sequence[PadDisplacement],
+    channel: int,
+    sensor: Sensor,
 ) -> PadResponse | None:
     """Return the response of one channel in the drops in which it can be used; None where the pads do not explain it."""
-    used = [drop for drop in drops if drop.recording.usable[channel]]
-    moving = [n for n, pad in enumerate(pads) if any(pad.wheel in drop.wheels for drop in used)]
+    used = [(drop, own) for drop, own in zip(drops, displacements, strict=True) if drop.recording.usable[channel]]
+    moving = [n for n, pad in enumerate(pads) if any(pad.wheel in drop.wheels for drop, _ in used)]
     if not used or not moving:
         return None
-    outputs, inputs = (np.concatenate(parts) for parts in zip(*_pairs(used, pads, channel, sensor), strict=True))
+    outputs, inputs = (np.concatenate(parts) for parts in zip(*_pairs(used, channel, sensor), strict=True))
     inputs = inputs[:, moving]
     gain = np.linalg.lstsq(inputs, outputs, rcond=None)[0]
     power = float(np.sum(np.abs(outputs) ** 2))
@@ -183,10 +188,9 @@ def _response(
 
 
 def _pairs(
-    drops: Iterable[DropTest], pads: Sequence[PadDisplacement], channel: int, sensor: Sensor
+    drops: Iterable[tuple[DropTest, Complex]], channel: int, sensor: Sensor
 ) -> Iterator[tuple[Complex, Complex]]:
     """Yield a channel's lines and the pads' displacements, or accelerations, of each drop."""
-    for drop in drops:
+    for drop, inputs in drops:
         lines, omega = _lines(drop, channel)
-        inputs = _displacements(drop, pads)
         yield lines, (-(omega[:, None] ** 2) * inputs if sensor.reads_gravity else inputs)

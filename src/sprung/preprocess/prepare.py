@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
-from sprung.campaign import Campaign, DropTest, unique_drop_names
+from sprung.campaign import Campaign, DropTest, Recording, unique_drop_names
 from sprung.errors import Fault
 from sprung.preprocess.alignment import active_channels, align_loggers
 from sprung.preprocess.clipping import check_full_scale, detect_clipping
@@ -74,7 +74,7 @@ def prepare(campaign: Campaign, progress: Progress = silent, *, full_rate: bool 
     whole = [recording if full_rate else decimate(recording) for recording in join_splices(campaign.recordings)]
     despiked = [remove_spikes(recording) for recording in counted(progress, stage, tuple(whole))]
     recordings = exclude_copies([align_loggers(recording) for recording, _ in despiked], campaign.drops)
-    stated = [replace(drop, recording=recording) for drop, recording in zip(campaign.drops, recordings, strict=True)]
+    stated = _with_recordings(campaign.drops, recordings)
     stated = [add_moving_pads(drop, campaign.sensors) for drop in exchange_opposite_channels(stated, campaign.sensors)]
     recordings = [exclude_still_pads(drop.recording, drop, campaign.sensors) for drop in stated]
     recordings = [exclude_flat_channels(recording) for recording in recordings]
@@ -88,13 +88,11 @@ def prepare(campaign: Campaign, progress: Progress = silent, *, full_rate: bool 
         )
         for drop, recording in zip(campaign.drops, recordings, strict=True)
     ]
-    stated = [replace(drop, recording=recording) for drop, recording in zip(stated, recordings, strict=True)]
-    recordings = check_pad_sensors(stated, campaign.sensors)
-    stated = [replace(drop, recording=recording) for drop, recording in zip(stated, recordings, strict=True)]
-    recordings = exclude_other_displacements(stated, campaign.sensors)
+    recordings = check_pad_sensors(_with_recordings(stated, recordings), campaign.sensors)
+    recordings = exclude_other_displacements(_with_recordings(stated, recordings), campaign.sensors)
     at_rest = [
-        None if is_on_pads(drop) else rest_only_fault(replace(drop, recording=recording), release, campaign.sensors)
-        for drop, recording, release in zip(campaign.drops, recordings, releases, strict=True)
+        None if is_on_pads(drop) else rest_only_fault(drop, release, campaign.sensors)
+        for drop, release in zip(_with_recordings(campaign.drops, recordings), releases, strict=True)
     ]
     recordings, releases, sensors = check_gravity(recordings, releases, campaign.sensors)
     # A sensor clips before its drift is removed or its high-pass undone: what it reads then is not within its range.
@@ -109,8 +107,7 @@ def prepare(campaign: Campaign, progress: Progress = silent, *, full_rate: bool 
         {} if drop.is_driven else detect_dropped_wheels(recording, release, sensors)
         for drop, recording, release in zip(campaign.drops, recordings, releases, strict=True)
     ]
-    drops = [replace(drop, recording=own) for drop, own in zip(stated, recordings, strict=True)]
-    drops = _correct_dropped_wheels(drops, dropped)
+    drops = _correct_dropped_wheels(_with_recordings(stated, recordings), dropped)
     corrected = replace(campaign, drops=tuple(drops), sensors=sensors)
 
     suspension = pool_suspension_forces(corrected, releases)
@@ -139,6 +136,10 @@ def prepare(campaign: Campaign, progress: Progress = silent, *, full_rate: bool 
         )
         observations.append(observation)
     return Prepared(tuple(decays), tuple(left_out), tuple(observations))
+
+
+def _with_recordings(drops: Sequence[DropTest], recordings: Sequence[Recording]) -> list[DropTest]:
+    return [replace(drop, recording=recording) for drop, recording in zip(drops, recordings, strict=True)]
 
 
 def _correct_dropped_wheels(drops: Sequence[DropTest], dropped: Sequence[Dropped]) -> list[DropTest]:

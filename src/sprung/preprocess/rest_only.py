@@ -58,9 +58,11 @@ def rest_only_fault(drop: DropTest, release: Release | None, sensors: Sequence[S
     """
     recording = drop.recording
     is_whole = drop.start is None and drop.end is None
+    if release is not None and is_whole:
+        return None
     channels = np.flatnonzero(recording.usable)
     values = recording.values[channels, find_stated_start(drop) : find_end(drop)[0] + 1]
-    if (release is not None and is_whole) or not values.size or not is_noise(values, recording.rate):
+    if not values.size or not is_noise(values, recording.rate):
         return None
     std = values.std(axis=1)
     most = int(np.argmax(std / np.maximum(np.median(std), np.finfo(float).tiny)))

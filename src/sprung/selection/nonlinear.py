@@ -93,8 +93,16 @@ def _searches(
     has_part = any(TERMS[term].explains_all for term in search.selected)
     if ranked and has_part:
         yield partial(_from_base, search, ranked)
-    found, simplest = search.structure, _simplest(search, plain)
-    is_plain = simplest is search
+    found = search.structure
+    plain = replace(
+        plain,
+        stop_gap=found.stop_gap,
+        dampers_steepen=found.dampers_steepen,
+        engine_frequency=found.engine_frequency,
+        engine_place=found.engine_place,
+    )
+    is_plain = plain.names == found.names
+    simplest = search if is_plain else search.refit(plain)
     if ranked:
         yield partial(_from_base, simplest, ranked)
     # Of a vehicle that nobody would recognise unlikely gains of its sensors may hide how much is left.
@@ -108,7 +116,7 @@ def _searches(
     if ranked and not (is_plain or has_part):
         yield partial(_from_base, search, ranked)
     # A linear fit that has gone astray for the sake of friction, small motions' friction above all, shows no score of it.
-    hidden = _hidden(search, ranked)
+    hidden = [term for term in search.open_terms(tuple(TERMS)) if TERMS[term].resembles_others and term not in ranked]
     bases = [simplest] if is_plain else [search, simplest]
     for base in bases if is_of_no_use and hidden else ():
         yield partial(_from_base, base, hidden)
@@ -118,24 +126,6 @@ def _searches(
         yield partial(_with_usual_terms, body, plain)
     if is_of_no_use or (search.lacks_something and refused):
         yield partial(_from_likeliest_beginning, bases, terms)
-
-
-def _simplest(search: ModelSearch, plain: ModelStructure) -> ModelSearch:
-    """Return the fit of the plain structure, of which starts of terms are those that were found."""
-    found = search.structure
-    plain = replace(
-        plain,
-        stop_gap=found.stop_gap,
-        dampers_steepen=found.dampers_steepen,
-        engine_frequency=found.engine_frequency,
-        engine_place=found.engine_place,
-    )
-    return search if plain.names == found.names else search.refit(plain)
-
-
-def _hidden(search: ModelSearch, ranked: Sequence[str]) -> list[str]:
-    """Return the open terms that resemble others, so that no score may show them, and that are not tried by their scores."""
-    return [term for term in search.open_terms(tuple(TERMS)) if TERMS[term].resembles_others and term not in ranked]
 
 
 def _smaller_structures(search: ModelSearch, plain: ModelStructure) -> list[ModelStructure]:
@@ -171,9 +161,9 @@ def _with_law_of_dampers(base: ModelSearch, beside: ModelStructure, so_far: Mode
 
 
 def _refused_parts(search: ModelSearch) -> list[str]:
-    """Return the parts that vibrate by themselves and gained more than chance does, but were refused.
+    """Return the terms that have to explain everything and gained more than chance does, but were refused.
 
-    Beside what else is missing they may explain but a small part of it.
+    Parts that vibrate by themselves, a rigid axle: beside what else is missing they may explain but a small part of it.
     """
     refused = {
         step.extra

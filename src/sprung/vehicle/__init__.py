@@ -72,6 +72,7 @@ from sprung.vehicle.parameter_values import all_names
 from sprung.vehicle.parameters import (
     NEUTRAL,
     PARAMETERS,
+    UNITS_PER_MASS,
     Parameter,
     mean_of_sides,
     parameter_names,
@@ -114,6 +115,7 @@ __all__ = [
     "SENSOR_UNKNOWNS",
     "STATIONS",
     "TABLE_1_CAR",
+    "UNITS_PER_MASS",
     "UNKNOWN_KEY",
     "WHEELS",
     "WHEEL_LOADS",

@@ -168,6 +168,17 @@ def _meaning(template: str, axle: str) -> str:
     return " ".join(words).removesuffix(",")
 
 
+UNITS_PER_MASS: Mapping[str, str] = {
+    "kg": "1",
+    "kg m^2": "m^2",
+    "N/m": "1/s^2",
+    "N s/m": "1/s",
+    "N": "m/s^2",
+    "N m": "m^2/s^2",
+    "N m s": "m^2/s",
+}
+"""Unit of a parameter divided by a mass, by its own unit."""
+
 PARAMETERS: Mapping[str, Parameter] = {
     name: about._replace(meaning=_meaning(about.meaning, axle))
     for pattern, about in _TABLE.items()

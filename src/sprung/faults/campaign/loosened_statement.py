@@ -6,7 +6,7 @@ two statements that contradict each other either one may be wrong. The wheelbase
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
 
@@ -25,63 +25,47 @@ _LITTLE = 0.3
 
 
 def loosened_statements(base: CandidateFit) -> Iterator[Hypothesis]:
-    """Let the mass of each load, and the wheelbase, count for little."""
+    """Let the mass of each load, and the wheelbase, count for little, and say what the recordings show instead."""
     campaign = base.campaign
-    loose: dict[str, Description] = {}
     if sum(map(tells_scale, campaign.known)) > 1:
         loaded = {decay.load for decay in base.decays}
         for load in campaign.loads:
             if load.name in loaded and load.total_mass(campaign.layout) > 0:
-                loose[f"load '{load.name}'"] = partial(_with_loose_mass, load=load)
+                yield from _loosened(base, partial(_with_loose_mass, load=load), partial(_mass_fault, load=load))
     if campaign.wheelbase is not None:
-        loose["vehicle.wheelbase"] = _with_loose_wheelbase
-    for where, description in loose.items():
-        hypothesis = _loosened(base, where, description)
-        # A model that lacks something takes anything that it is free to take.
-        if hypothesis.candidate.fit.overdispersion <= OVERDISPERSED:
-            yield hypothesis
+        yield from _loosened(base, _with_loose_wheelbase, partial(_wheelbase_fault, stated=campaign.wheelbase.value))
 
 
-def with_found_value(base: CandidateFit, hypothesis: Hypothesis) -> Hypothesis:
-    """Return a hypothesis about a loosened statement with what its fit says of it.
-
-    Parameters
-    ----------
-    base
-        The fit of the campaign as it is.
-    hypothesis
-        Once it is confirmed.
-    """
-    stated, found = base.campaign, hypothesis.candidate
-    place = hypothesis.fault.where if hypothesis.fault.code == "known" else ""
-    for load in stated.loads:
-        if place == f"load '{load.name}'":
-            loose = next(one for one in found.campaign.loads if one.name == load.name)
-            mass = load.total_mass(stated.layout)
-            own = dict(zip(found.fit.names, found.fit.values.tolist(), strict=True))
-            shown = sum(own[name] for name in loose.uncertain_masses)
-            what = (
-                f"the recordings contradict its mass of {mass:g} kg beside what was weighed of the vehicle, and show "
-                f"{shown:.4g} kg; corrected"
-            )
-            do = "Weigh the load again, and correct its mass in the campaign file."
-            return replace(hypothesis, fault=Fault("known", place, what, do))
-    if stated.wheelbase is None or place != "vehicle.wheelbase":
-        return hypothesis
-    shown = evaluate_in("wheelbase", found)
-    what = (
-        f"the recordings contradict wheelbase = {stated.wheelbase.value:g} m; by the places of the sensors it is "
-        f"{shown:.4g} m; corrected"
-    )
-    do = "Measure the wheelbase and the places of the sensors again, and correct what was wrong in the campaign file."
-    return replace(hypothesis, fault=Fault("known", place, what, do))
-
-
-def _loosened(base: CandidateFit, where: str, description: Description) -> Hypothesis:
+def _loosened(
+    base: CandidateFit, description: Description, fault: Callable[[CandidateFit], Fault]
+) -> Iterator[Hypothesis]:
     correction = Correction(description=description)
     # A statement may be far off, and everything else with it: a few steps do not tell what it explains.
     candidate = base.refit(correction, base.fit)
-    return Hypothesis(Fault("known", where, "", ""), "corrected", correction, candidate.table, candidate, free=1)
+    # A model that lacks something takes anything that it is free to take.
+    if candidate.fit.overdispersion <= OVERDISPERSED:
+        yield Hypothesis(fault(candidate), "corrected", correction, candidate.table, candidate, free=1)
+
+
+def _mass_fault(candidate: CandidateFit, load: Load) -> Fault:
+    campaign, parameters = candidate.campaign, candidate.fit.parameters
+    mass = load.total_mass(campaign.layout)
+    shown = sum(parameters[name] for name in campaign.load(load.name).uncertain_masses)
+    what = (
+        f"the recordings contradict its mass of {mass:g} kg beside what was weighed of the vehicle, and "
+        f"show {shown:.4g} kg; corrected"
+    )
+    do = "Weigh the load again, and correct its mass in the campaign file."
+    return Fault("known", f"load '{load.name}'", what, do)
+
+
+def _wheelbase_fault(candidate: CandidateFit, stated: float) -> Fault:
+    what = (
+        f"the recordings contradict wheelbase = {stated:g} m; by the places of the sensors it is "
+        f"{evaluate_in('wheelbase', candidate):.4g} m; corrected"
+    )
+    do = "Measure the wheelbase and the places of the sensors again, and correct what was wrong in the campaign file."
+    return Fault("known", "vehicle.wheelbase", what, do)
 
 
 def _with_loose_mass(campaign: Campaign, load: Load) -> Campaign:
