@@ -14,7 +14,7 @@ from documents import blocks_of, indented_code, run_page
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGES = ("README.md", *sorted(f"docs/{path.name}" for path in (ROOT / "docs").glob("*.md")))
-SLOW = {"docs/exports.md", "docs/fleets.md", "docs/tutorial.md"}
+SLOW = {"README.md", "docs/exports.md", "docs/fleets.md", "docs/tutorial.md"}
 MODULES = ["sprung", *(module.name for module in pkgutil.walk_packages(sprung.__path__, "sprung."))]
 
 

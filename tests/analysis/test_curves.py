@@ -43,6 +43,7 @@ def test_the_curves_are_true_within_their_standard_errors(result: Result) -> Non
         assert np.all(std <= 0.02 * np.abs(true))
 
 
+@pytest.mark.slow
 def test_the_standard_error_follows_from_the_joint_covariance(result: Result) -> None:
     c, r, cov = result.parameters["c_sf"].value, result.parameters["r_f"].value, result.covariance
     assert c is not None

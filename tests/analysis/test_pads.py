@@ -122,6 +122,7 @@ def late(record: Real) -> Real:
         ("pad_fr", late, "late"),
     ],
 )
+@pytest.mark.slow
 def test_one_sensor_at_fault_is_named_and_corrected(channel: str, change: Change, code: str) -> None:
     """What is predicted of free decays does not hold on pads: such campaigns were rejected after a minute without a reason."""
     made = sprung.simulate(TABLE_1_CAR, drops=[PADS], noise=NOISE, seed=1, pads=SHORT)
@@ -131,6 +132,7 @@ def test_one_sensor_at_fault_is_named_and_corrected(channel: str, change: Change
     assert max(errors_of(result, TABLE_1_CAR).values()) < 5e-3
 
 
+@pytest.mark.slow
 def test_a_sensor_stated_elsewhere_on_pads_is_named_and_corrected() -> None:
     made = sprung.simulate(TABLE_1_CAR, drops=[PADS], noise=NOISE, seed=1, pads=SHORT)
     sensors = [

@@ -73,6 +73,7 @@ def flights_of(seed: int) -> list[FlightLikelihood]:
     return [decay.flight for decay, _ in told if decay.flight is not None]
 
 
+@pytest.mark.slow
 def test_at_the_truth_a_flight_leaves_noise_and_no_slope() -> None:
     flights = flights_of(4)
     squares = freedom = 0.0

@@ -151,6 +151,7 @@ def test_the_text_is_checked_while_it_is_typed(user: Tabs, file: Path) -> None:
     assert file.read_text() == text  # nothing was saved
 
 
+@pytest.mark.slow
 def test_what_was_entered_remains_where_saving_fails(user: Tabs, file: Path) -> None:
     page = user.open(PAGE)
     before = file.read_text()
@@ -173,6 +174,7 @@ def test_what_was_entered_remains_where_saving_fails(user: Tabs, file: Path) -> 
     user.forgive("net::ERR_FAILED")
 
 
+@pytest.mark.slow
 def test_two_sensors_of_one_name_are_moved_each(user: Tabs, file: Path) -> None:
     file.write_text(file.read_text().replace('"body_fr"', '"body_fl"'))
     page = user.open(PAGE)
@@ -223,6 +225,7 @@ NAMELESS = """(selector) => [...document.querySelectorAll(selector)].filter((one
 }).map((one) => one.outerHTML)"""
 
 
+@pytest.mark.slow
 def test_the_keyboard_alone_suffices(user: Tabs, file: Path) -> None:
     page = user.open(PAGE)
     reached = set()

@@ -66,6 +66,7 @@ def carried(page: str, name: str) -> str:
     return text
 
 
+@pytest.mark.slow
 def test_names_are_no_markup_and_the_file_is_carried_byte_by_byte(server: Served, file: Path) -> None:
     page = server.ask(PAGE).text
     assert "<b>" not in page
@@ -116,6 +117,7 @@ def test_problems_are_answered_without_saving(server: Served, file: Path) -> Non
 
 
 @pytest.mark.usefixtures("file")
+@pytest.mark.slow
 def test_a_recording_is_drawn_and_one_elsewhere_is_not_read(server: Served) -> None:
     found = sent(server, f"{PAGE.replace('?', '/drop?')}&drop=0").json
     assert found["svg"].startswith("<svg")

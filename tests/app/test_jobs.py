@@ -36,6 +36,7 @@ def ended(jobs: Jobs, job: Job, limit: float = 60.0) -> Job:
     return jobs.get(job.id)
 
 
+@pytest.mark.slow
 def test_a_job_does_what_the_command_does(jobs: Jobs, tmp_path: Path) -> None:
     copy_sedan(tmp_path / "car")
     job = ended(jobs, jobs.start(("check", "car", "--json"), tmp_path, "Check"))

@@ -78,6 +78,7 @@ def test_a_killed_server_takes_its_jobs_with_it_and_the_next_one_goes_on(folder:
     assert not [path for path in folder.rglob(".*") if path.name != ".sprung-files.json"]
 
 
+@pytest.mark.slow
 def test_a_killed_worker_is_reported_and_the_job_can_be_started_again(folder: Path) -> None:
     with served(folder) as server:
         job = identify(server)

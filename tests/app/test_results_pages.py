@@ -67,6 +67,7 @@ def user(browser: Any, server: Served) -> Iterator[Tabs]:
         yield opened
 
 
+@pytest.mark.slow
 def test_a_result_says_what_to_measure_next_and_leads_on(user: Tabs) -> None:
     page = user.open(PAGES[0])
     assert page.locator(".verdict .state").inner_text() == "Verdict: accept"
@@ -253,6 +254,7 @@ def test_the_motion_turns_stops_and_is_saved_on_white(user: Tabs, tmp_path: Path
     assert page.locator("#dampers svg path.points").count() >= 4
 
 
+@pytest.mark.slow
 def test_a_recording_that_is_marked_before_the_script_arrives_is_shown(user: Tabs) -> None:
     page, held = user.open("/"), list[Any]()
     page.route("**/scripts/recordings.js", lambda route: held.append(route))  # noqa: PLW0108 (playwright marks it)
@@ -262,6 +264,7 @@ def test_a_recording_that_is_marked_before_the_script_arrives_is_shown(user: Tab
     page.locator("#chosen li").wait_for()
 
 
+@pytest.mark.slow
 def test_recordings_are_shown_side_by_side(user: Tabs, tmp_path: Path) -> None:
     page = user.open("/recordings")
     page.get_by_label("Search files and channels").fill("after/empty_b")
@@ -375,6 +378,7 @@ def test_a_result_that_was_changed_is_refused(server: Served) -> None:
      "/recordings/visible?file=../../etc/passwd&low=0&high=1", "/recordings/channels?file=/etc/passwd",
      "/recordings/visible?file=before/empty_bounce.csv&low=nan&high=1", "/motion", "/export?results=before"],
 )  # fmt: skip
+@pytest.mark.slow
 def test_nothing_outside_the_folder_is_read(server: Served, path: str) -> None:
     answer = server.ask(path)
     assert answer.status in {400, 404}

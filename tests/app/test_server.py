@@ -53,6 +53,7 @@ def test_sigterm_ends_it_with_the_status_of_shells(tmp_path: Path) -> None:
     assert err.endswith("sprung was terminated.\n")
 
 
+@pytest.mark.slow
 def test_a_port_that_is_taken_is_named_with_a_remedy(tmp_path: Path) -> None:
     with served(tmp_path) as server:
         second = run("app", tmp_path, "--no-browser", "--port", str(server.port))
@@ -86,6 +87,7 @@ def test_json_is_one_document_with_the_address(tmp_path: Path) -> None:
     assert process.communicate(timeout=20)[0] == ""
 
 
+@pytest.mark.slow
 def test_a_new_run_has_new_keys(tmp_path: Path) -> None:
     with served(tmp_path) as first:
         pass
@@ -106,6 +108,7 @@ def test_the_first_page_needs_no_numerics_and_the_server_is_small(tmp_path: Path
     "program",
     ["import sprung.report, sprung.study, sprung.ride", "import sprung.cli", "import sprung; sprung.identify"],
 )
+@pytest.mark.slow
 def test_nobody_else_imports_anything_of_it(program: str) -> None:
     libraries = ("starlette", "uvicorn", "anyio", "h11", "sprung.app")
     check = f"{program}; import sys; print([name for name in {libraries} if name in sys.modules])"

@@ -49,6 +49,7 @@ def test_steps_of_a_recorder_lead_to_no_runaway(modes: list[Mode], seed: int, wh
     assert np.isfinite(trace.amplitude).all()
 
 
+@pytest.mark.slow
 def test_a_window_with_fewer_samples_than_unknowns_says_nothing(modes: list[Mode]) -> None:
     """1.5 periods of 26.7 Hz at 60 Hz are 4 samples of 3 motions, for 3 offsets, 12 other amplitudes and 4 unknowns."""
     record = np.random.default_rng(1).normal(size=(3, 200))

@@ -81,6 +81,7 @@ def test_what_the_model_does_not_explain_is_not_accepted() -> None:
     assert "does not explain" in verdict.reasons[0] or "not converge" in verdict.reasons[0]
 
 
+@pytest.mark.slow
 def test_coloured_noise_is_not_taken_for_model_error() -> None:
     """The sensors do the same at rest, so it is their noise; but the error bars must grow."""
     random = np.random.default_rng(5)

@@ -111,6 +111,7 @@ def campaigns(draw: st.DrawFn) -> Campaign:
 
 @settings(max_examples=60, deadline=None)
 @given(campaigns())
+@pytest.mark.slow
 def test_what_is_written_is_read_back(campaign: Campaign) -> None:
     with tempfile.TemporaryDirectory() as folder:
         back = read(write(campaign, folder))

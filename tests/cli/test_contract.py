@@ -62,7 +62,7 @@ SEVEN_DEGREES_OF_FREEDOM = {
 }
 
 
-@pytest.fixture(params=["sedan", "leafbus", "one_drop"])
+@pytest.fixture(params=["sedan", pytest.param("leafbus", marks=pytest.mark.slow), "one_drop"])
 def any_campaign(request: pytest.FixtureRequest) -> Identified:
     made = request.getfixturevalue(request.param)
     assert isinstance(made, Identified)
@@ -89,6 +89,7 @@ def test_version() -> None:
     assert run("--version") == Run(0, f"sprung {sprung.__version__}\n", "")
 
 
+@pytest.mark.slow
 def test_statuses(sedan: Identified, leafbus: Identified, one_drop: Identified) -> None:
     assert (sedan.text.status, sedan.json.status, sedan.json.json["verdict"]["state"]) == (0, 0, "accept")
     assert (leafbus.text.status, leafbus.json.status, leafbus.json.json["verdict"]["state"]) == (3, 3, "reject")
@@ -179,6 +180,7 @@ def test_a_determined_campaign_says_so(sedan: Identified) -> None:
     assert abs(spring["value"] - 17000) < 5 * spring["std"] < 500
 
 
+@pytest.mark.slow
 def test_what_was_known_stays_as_given(leafbus: Identified) -> None:
     parameters = leafbus.json.json["parameters"]
     assert {name: parameters[name]["value"] for name in ("a", "b")} == {"a": 2.22, "b": 1.73}
@@ -224,6 +226,7 @@ def test_load_gives_the_result_back(any_campaign: Identified) -> None:
         np.testing.assert_array_equal(again.series[name].measured, series.measured)
 
 
+@pytest.mark.slow
 def test_results_are_written_beside_the_campaign_unless_told(folder: Folder) -> None:
     before = folder.listing()
     assert run("identify", folder.path / "campaign.toml").status == 0
@@ -299,6 +302,7 @@ def test_simulate_and_back(vehicle_file: Path, tmp_path: Path) -> None:
     assert found.json["scale"]["per_total_mass"]["k_sf"]["value"] == pytest.approx(17000 / 1551.8, rel=0.02)
 
 
+@pytest.mark.slow
 def test_demo(tmp_path: Path) -> None:
     said = run("demo", tmp_path / "bus", "--json")
     assert (said.status, said.err) == (0, "")

@@ -75,6 +75,7 @@ def test_identify_says_what_would_help(one_drop: Identified, sedan: Identified) 
 
 
 @pytest.mark.long
+@pytest.mark.slow
 def test_a_rejected_campaign_is_no_ground_for_a_plan(leafbus: Identified, tmp_path: Path) -> None:
     campaign = linear_leafbus(tmp_path / "campaign")
     said = run("plan", campaign, "--json")

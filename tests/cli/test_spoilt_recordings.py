@@ -53,6 +53,7 @@ def test_a_missing_sample_is_filled_in_and_told(folder: Folder) -> None:
         assert abs(said.json["parameters"][name]["value"] - one["value"]) < 0.5 * one["std"]
 
 
+@pytest.mark.slow
 def test_a_channel_with_gaps_is_left_out_of_its_drop(folder: Folder) -> None:
     folder.column("wheel_fl", lambda sample, number: "NaN" if 500 <= sample < 520 else number)
     said, text = identify(folder)
@@ -69,6 +70,7 @@ def test_a_channel_with_gaps_is_left_out_of_its_drop(folder: Folder) -> None:
     assert abs(said.json["parameters"]["k_sf"]["value"] / 17000 - 1) < 0.02  # the other drops still tell
 
 
+@pytest.mark.slow
 def test_a_channel_that_one_recording_lacks(folder: Folder) -> None:
     folder.lines(lambda lines: [line.rpartition(",")[0] for line in lines])
     said, text = identify(folder)
@@ -87,6 +89,7 @@ def test_a_misnamed_channel_in_one_recording(folder: Folder) -> None:
     assert "Did you mean 'wheel_r'?" in said.json["faults"][0]["do"]
 
 
+@pytest.mark.slow
 def test_a_channel_that_nobody_declares_is_nobodys_business(folder: Folder) -> None:
     plain = run("identify", folder.path, "--json", "--no-report").json
     folder.lines(lambda lines: [f"{lines[0]},note", *(f"{line},hello" for line in lines[1:])])
@@ -98,6 +101,7 @@ def test_a_channel_that_nobody_declares_is_nobodys_business(folder: Folder) -> N
     assert [one["name"] for one in before if one not in after] == ["empty_bounce.csv"]
 
 
+@pytest.mark.slow
 def test_a_drop_that_ends_too_soon_is_left_out(folder: Folder) -> None:
     folder.lines(lambda lines: lines[:11])
     said, text = identify(folder)
@@ -161,6 +165,7 @@ def test_start_and_end_of_a_drop_are_used_as_given(folder: Folder) -> None:
     assert (drop["start"], drop["end"]) == pytest.approx((0.6, 2.0))
 
 
+@pytest.mark.slow
 def test_without_wheel_sensors_nothing_breaks(folder: Folder) -> None:
     for station in ("fl", "fr", "rl", "rr"):
         folder.edit(f'[[sensor]]\nchannel = "wheel_{station}"\non = "{station}"\n', "")

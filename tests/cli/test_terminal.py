@@ -68,6 +68,7 @@ def test_a_wide_terminal_says_what_a_parameter_means(one_drop: Identified) -> No
 
 
 @pytest.mark.long
+@pytest.mark.slow
 def test_long_reasons_hang_below_their_dash(leafbus: Identified) -> None:
     _, _, verdict = leafbus.text.out.partition("Verdict: ")
     reasons = verdict.split("\n\n", maxsplit=1)[0].splitlines()[1:]
@@ -178,6 +179,7 @@ def test_too_little_memory_is_said_with_what_to_do(folder: Folder, monkeypatch: 
 
 @pytest.mark.skipif(os.name == "nt", reason="there, file names are in Unicode whatever the locale")
 @pytest.mark.parametrize("command", ["identify", "check"])
+@pytest.mark.slow
 def test_a_recording_whose_name_the_locale_cannot_write(folder: Folder, command: str) -> None:
     folder.edit('"empty_bounce.csv"', '"Leer Hüpfen 日本.csv"')
     said = process(command, folder.path, LC_ALL="C", PYTHONUTF8="0")
@@ -210,6 +212,7 @@ def test_a_terminal_that_knows_only_ascii(folder: Folder) -> None:
     assert json.loads(document.stdout.decode("utf-8"))["drops"][0]["file"] == "Käfer.csv"
 
 
+@pytest.mark.slow
 def test_as_a_module(folder: Folder) -> None:
     folder.edit("wheelbase", "wheelbse")
     refused = process("check", folder.path, "--json")

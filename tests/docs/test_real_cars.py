@@ -127,6 +127,7 @@ def test_a_campaign_of_every_kind() -> None:
         assert values[:, :190].std(axis=1) == pytest.approx(0.02, rel=0.35)
 
 
+@pytest.mark.slow
 def test_what_fails_is_an_outcome() -> None:
     ((campaign, truth),) = record([replace(draw_test("plain", 0), drops=draw_test("plain", 0).drops[:1], duration=1.2)])
     failed = examine(campaign, truth, 30.0, extras=["no such term"])

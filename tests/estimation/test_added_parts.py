@@ -100,6 +100,7 @@ def test_a_part_that_is_there_gains_as_its_own_model_says(
 
 
 @pytest.mark.parametrize("with_drops", [False, True])
+@pytest.mark.slow
 def test_terms_gain_on_pads_what_their_own_models_say(with_drops: bool) -> None:
     """Lines in place of modes, and both together."""
     own = TABLE_1_CAR.parameters

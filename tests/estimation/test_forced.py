@@ -84,6 +84,7 @@ def uncertain(campaign: Campaign) -> Campaign:
     return replace(campaign, sensors=tuple(sensors))
 
 
+@pytest.mark.slow
 def test_gradient_is_that_of_the_likelihood() -> None:
     """By all parameters of the vehicle and its sensors, inputs and ends being eliminated anew at every point."""
     campaign = uncertain(on_pads(WITH_RUBBER, load="bags"))
@@ -204,6 +205,7 @@ def test_a_joint_fit_is_better_than_either() -> None:
     assert np.all(np.diag(both) < np.diag(alone))
 
 
+@pytest.mark.slow
 def test_a_detour_by_fewer_lines_ends_where_all_lines_lead() -> None:
     """Records of a minute, looked through at a sixth of their lines, end at the optimum of all of them."""
     drops = [{"excitation": "pads", "load": "bags"}]

@@ -65,6 +65,7 @@ def test_between_both_a_prior_adds_its_information(both: tuple[FitStatistics, Fi
     np.testing.assert_allclose(found.covariance / np.outer(scale, scale), expected / np.outer(scale, scale), atol=1e-6)
 
 
+@pytest.mark.slow
 def test_a_mount_whose_damping_does_not_show_is_known_less_well() -> None:
     """No mount is without damping: 1.3 times the error of the rate, by the information on both, where none is stated."""
     car = Vehicle.from_parameters(TABLE_1_CAR.parameters | {"k_df": 4e5, "k_dr": 4e5})

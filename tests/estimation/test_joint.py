@@ -218,6 +218,7 @@ def test_a_channel_left_out_costs_certainty_only() -> None:
     assert np.all(np.abs(np.log(there.values / here.values)) < 3 * spread)
 
 
+@pytest.mark.slow
 def test_errors_match_their_bars_over_seeds() -> None:
     """Over 60 campaigns the squared errors in standard uncertainties average one; ± 4 of its own standard errors."""
     names = tuple(TABLE_1_CAR.parameters)

@@ -35,6 +35,7 @@ def near_truth(result: Result) -> None:
 
 
 @pytest.mark.parametrize("stated", [190.0, 100.0])
+@pytest.mark.slow
 def test_the_mass_of_a_load_that_was_stated_wrong(stated: float) -> None:
     """A sensor on the body was blamed, or both axles, and the campaign rejected."""
     wrong = Load(name="ballast", items=(Item(mass=stated, position=(-2.2, 0.25, 0.6), inertia=(5.0, 6.0)),))
@@ -59,6 +60,7 @@ def test_a_wheelbase_that_was_stated_wrong() -> None:
     near_truth(result)
 
 
+@pytest.mark.slow
 def test_with_one_mass_alone_the_load_is_not_told_from_it() -> None:
     """What was weighed and what was loaded contradict each other: which of them is wrong nothing tells."""
     campaign = recorded()

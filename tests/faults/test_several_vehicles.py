@@ -77,6 +77,7 @@ def test_what_a_model_lacks_divides_nothing(number: int) -> None:
     assert divide_drops(linear(real_campaigns()[number])) is None
 
 
+@pytest.mark.slow
 def test_recordings_of_two_vehicles_are_rejected_and_told_apart() -> None:
     campaign, names = mixed((1, 3, 5, 7, 9))
     run = analyse(campaign, AnalysisOptions())

@@ -105,6 +105,7 @@ def test_a_rig_that_drifts_is_told_from_a_vehicle_that_deviates() -> None:
     np.testing.assert_allclose(chart.offsets[0, scaled], np.log(1.01), atol=0.02)
 
 
+@pytest.mark.slow
 def test_a_vehicle_that_deviates_in_two_parameters_names_both() -> None:
     fleet = draw_fleet(60, np.random.default_rng(10))
     fleet.positions[30, [NAMES.index("m_uf"), NAMES.index("k_sr")]] += (0.2, -0.25)

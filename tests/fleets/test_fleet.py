@@ -161,6 +161,7 @@ def test_an_exact_wheelbase_is_shown_as_exact(identified: Identified) -> None:
     assert not any(spread.exact for name, spread in fleet.types[0].parameters.items() if name != "wheelbase")
 
 
+@pytest.mark.slow
 def test_exact_values_that_differ_have_a_spread_but_no_error() -> None:
     """Wheels weighed exactly, one by one, and of one vehicle on scales with an error."""
     made = [estimated(number, "rig", "m_s", "m_u", "k_s") for number in range(6)]
@@ -276,6 +277,7 @@ def test_types_are_names_or_all_vehicles() -> None:
     assert collect_estimates([]) is None
 
 
+@pytest.mark.slow
 def test_without_any_scale_only_ratios_are_compared() -> None:
     """Three cars without weighing or load: m_s of 1380 ± 4000 kg would be invented."""
     made = [
@@ -326,6 +328,7 @@ def estimated(number: int, vehicle: str, *names: str) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize("one_type", [False, True])
+@pytest.mark.slow
 def test_parts_of_a_vehicle_are_types_of_their_own(one_type: bool) -> None:
     """k_s of a quarter car is no k_s of a roll plane, whatever the names of the vehicles are."""
     cars = [estimated(number, "car", "m_s", "I_xx", "m_uf", "k_sf") for number in range(3)]
@@ -350,6 +353,7 @@ def test_parts_of_a_vehicle_are_types_of_their_own(one_type: bool) -> None:
     assert found.document()["parts"] == parts
 
 
+@pytest.mark.slow
 def test_the_command(identified: Identified, tmp_path: Path) -> None:
     folder, fleet = identified
     shutil.copytree(folder / "out", tmp_path / "out")

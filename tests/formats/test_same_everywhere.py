@@ -80,6 +80,7 @@ def check(result: sprung.Result, truth: sprung.Result, off: float) -> None:
 
 
 @pytest.mark.parametrize("name", WAYS)
+@pytest.mark.slow
 def test_the_same_parameters(tmp_path: Path, campaign: sprung.Campaign, truth: sprung.Result, name: str) -> None:
     way = WAYS[name]
     if way.needs:

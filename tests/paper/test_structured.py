@@ -59,6 +59,7 @@ def assert_exact(vehicle: Vehicle, loads: tuple[Load, ...], known: Mapping[str, 
 
 @given(vehicles, st.sampled_from([body_load, full_load, bag]))
 @settings(max_examples=30, deadline=None)
+@pytest.mark.slow
 def test_exact_from_any_load(vehicle: Vehicle, load: type) -> None:
     assert_exact(vehicle, (EMPTY, load(vehicle)))
 

@@ -64,12 +64,14 @@ def test_the_gain_is_that_of_fits_with_and_without_the_term(candidate: TermCandi
     assert gained == pytest.approx(16 * candidate.required, rel=0.4)
 
 
+@pytest.mark.slow
 def test_half_the_noise_shows_half_the_size() -> None:
     """Nearly: both are computed at twice the size that is found, and gains grow as its square where it is small."""
     for quiet in detect_terms(setup(0.01), DROPS, (TYRES, RUBBER)):
         assert quiet.smallest == pytest.approx(0.5 * found()[quiet.name].smallest, rel=0.1)
 
 
+@pytest.mark.slow
 def test_repeats_add_their_gains_and_a_term_is_its_own_rival() -> None:
     """Two times the same drops; and of two candidates that are the same term neither is told from the other."""
     twice = detect_terms(setup(), (*DROPS, *DROPS), (TYRES,))[0]
@@ -92,6 +94,7 @@ def test_the_plan_states_terms_and_json_has_them() -> None:
     assert sprung.plan(TABLE_1_CAR, known=MASS).terms == {}
 
 
+@pytest.mark.slow
 def test_sensors_enter_the_bound_as_they_enter_the_fit() -> None:
     """Stated sensors have their default uncertainties: 1 %, 2 degrees and 1 cm; those of a plan without any are exact."""
     sensors = [replace(one, gain_std=0.01, tilt_std=2.0, position_std=0.01) for one in default_sensors(TABLE_1_CAR)]

@@ -183,6 +183,7 @@ def test_a_step_takes_the_worst_from_what_it_is_to_what_it_would_be() -> None:
     assert plan.next_step.text.startswith(said)
 
 
+@pytest.mark.slow
 def test_what_is_known_is_not_offered() -> None:
     axles = {f"{axle}_axle_mass": {"value": 776.0, "std": 2.0} for axle in ("front", "rear")}
     labels = {row.label for row in sprung.plan(TABLE_1_CAR, known=axles).rows}
@@ -190,6 +191,7 @@ def test_what_is_known_is_not_offered() -> None:
     assert "m_s" not in sprung.plan(TABLE_1_CAR, known={"m_s": 1380.0}).rows[0].bound.percents  # type: ignore[union-attr]
 
 
+@pytest.mark.slow
 def test_a_campaign_goes_on_from_its_own_error_bars() -> None:
     campaign = sprung.simulate(TABLE_1_CAR, drops=[{}, {"wheels": ("fl", "rl")}], noise=0.05, seed=3)
     result, plan = sprung.identify(campaign), sprung.plan(campaign)

@@ -145,6 +145,7 @@ def test_in_a_browser(browser: Any, page: str, tmp_path: Path) -> None:
             view.close()
 
 
+@pytest.mark.slow
 def test_by_keyboard_and_on_paper(browser: Any, page: str, tmp_path: Path) -> None:
     (tmp_path / "check.html").write_text(page, encoding="utf-8")
     view = browser.new_page()

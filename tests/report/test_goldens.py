@@ -23,12 +23,14 @@ def made(name: str) -> sprung.Result:
     return RESULTS[name]()
 
 
+@pytest.mark.slow
 def test_a_stored_result_is_what_the_program_makes(name: str, made: sprung.Result) -> None:
     """If this fails, `pytest tests/report --regenerate` makes results and displays anew: read what changed."""
     stored = json.loads((STORED / f"{name}.json").read_text(encoding="utf-8"))
     assert list(differences(stored, json.loads(made.to_json()))) == []
 
 
+@pytest.mark.slow
 def test_it_has_the_verdict_that_it_is_stored_for(name: str, made: sprung.Result) -> None:
     assert made.verdict.state == VERDICTS[name]
 

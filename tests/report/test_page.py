@@ -219,6 +219,7 @@ def contrast(one: str, other: str) -> float:
     return (high + 0.05) / (low + 0.05)
 
 
+@pytest.mark.slow
 def test_the_modes_move(opened: Any) -> None:
     page = opened(1440, reduced_motion="no-preference")
     edges = "[...document.querySelectorAll('svg.car .edges')].map(one => one.getAttribute('d'))"
@@ -231,6 +232,7 @@ def test_the_modes_move(opened: Any) -> None:
     assert page.get_by_role("button", name="Play").is_visible()
 
 
+@pytest.mark.slow
 def test_nothing_moves_for_who_does_not_want_it(opened: Any) -> None:
     page = opened(1440, reduced_motion="reduce")
     edges = "document.querySelector('svg.car .edges').getAttribute('d')"
@@ -241,6 +243,7 @@ def test_nothing_moves_for_who_does_not_want_it(opened: Any) -> None:
     page.wait_for_function(f"before => {edges} !== before", arg=before)
 
 
+@pytest.mark.slow
 def test_printed_it_is_whole_and_still(opened: Any, result: Result) -> None:
     page = opened(1440, reduced_motion="no-preference", color_scheme="dark")
     folded = page.locator("details.drop:not([open])")
@@ -274,6 +277,7 @@ def samples_of(result: Result, name: str) -> tuple[np.ndarray, np.ndarray]:
     return series.time, series.body_measured[0].astype(float)
 
 
+@pytest.mark.slow
 def test_a_fit_is_read_out_and_zoomed_by_keyboard(opened: Any, result: Result) -> None:
     page = opened(1440)
     figure = open_figure(page, "comparison")
@@ -297,6 +301,7 @@ def test_a_fit_is_read_out_and_zoomed_by_keyboard(opened: Any, result: Result) -
     figure.locator(".cursor").first.wait_for(state="detached")
 
 
+@pytest.mark.slow
 def test_channels_are_switched_off_and_a_pull_zooms(opened: Any) -> None:
     page = opened(1000)
     figure = open_figure(page, "recordings")
@@ -350,6 +355,7 @@ def test_a_figure_is_saved_by_a_click(opened: Any, result: Result, tmp_path: Pat
         assert download.value.path().read_text(encoding="utf-8-sig").count("\n") > 5
 
 
+@pytest.mark.slow
 def test_without_a_script_everything_is_there(browser: Any, folder: Path) -> None:
     page = browser.new_page(java_script_enabled=False)
     page.goto((folder / "report.html").as_uri())
@@ -360,6 +366,7 @@ def test_without_a_script_everything_is_there(browser: Any, folder: Path) -> Non
     page.close()
 
 
+@pytest.mark.slow
 def test_everything_is_reached_by_keyboard(opened: Any) -> None:
     """Tab goes through links, tables that scroll, buttons, and drawings, each with a mark that shows where one is."""
     page = opened(1000)

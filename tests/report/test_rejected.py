@@ -100,6 +100,7 @@ def test_its_reasons_say_nothing_that_only_the_rejected_fit_says() -> None:
     assert "only known" not in reasons
 
 
+@pytest.mark.slow
 def test_what_was_known_is_not_compared_with_a_model_that_does_not_hold(sound: Result) -> None:
     """Neither an uncertain quantity, whose estimate is withheld, nor an exact one."""
     uncertain, exact = (

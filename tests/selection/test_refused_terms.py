@@ -36,6 +36,7 @@ def test_a_term_that_is_gone_beside_others_is_refused_without_being_asked_again(
     assert "it does not explain the whole misfit" in found.steps[-1].text
 
 
+@pytest.mark.slow
 def test_a_term_that_took_the_place_of_another_is_left_out_beside_nonlinear_ones() -> None:
     """A Zener branch in the place of a damper mount has no step of its own among those of the search (once a KeyError)."""
     car = TABLE_1_CAR.with_values(r_f=1.5, r_r=1.5)

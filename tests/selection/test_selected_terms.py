@@ -131,6 +131,7 @@ def test_friction_and_rebound_of_a_van_are_selected() -> None:
     assert result.verdict.state == "accept"
 
 
+@pytest.mark.slow
 def test_a_body_that_could_carry_no_usual_engine_is_identified() -> None:
     # Its mass sits in its middle: a tenth of it above either axle would have more pitch inertia than all of it.
     compact = TABLE_1_CAR.with_values(I_yy=200.0, name="compact")

@@ -172,6 +172,7 @@ def integrated(vehicle: Vehicle, load: Load, start: Array, times: Array) -> Arra
     ],
     ids=["car", "bus, left wheels", "bus with tyre damping", "loaded car, one wheel"],
 )
+@pytest.mark.slow
 def test_drop_against_an_integrator(vehicle: Vehicle, load: Load, wheels: tuple[Wheel, ...], height: float) -> None:
     drop = drop_from_blocks(vehicle, load, wheels, height)
     times = np.linspace(0, 0.4, 81)

@@ -41,6 +41,7 @@ def test_hardly_any_force_makes_hardly_any_difference(vehicle: Vehicle) -> None:
             assert np.abs(found - known).max() < 2e-4 * np.abs(known).max(), name
 
 
+@pytest.mark.slow
 def test_friction_and_rebound_against_equations_written_out_elsewhere() -> None:
     car = Vehicle.from_parameters(
         TABLE_1_CAR.parameters | {"F_f": 100.0, "F_r": 130.0, "s_f": 2e5, "s_r": 3e5, "r_f": 2.0, "r_r": 1.5}

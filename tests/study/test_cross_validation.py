@@ -19,6 +19,7 @@ def found() -> Validation:
     return sprung.validate(made, tracks="shared", extras=())
 
 
+@pytest.mark.slow
 def test_its_result_is_that_of_identify(found: Validation) -> None:
     made = sprung.simulate(TABLE_1_CAR, noise=0.02, seed=5, known={"total_mass": TABLE_1_CAR.total_mass})
     assert found.result.to_json() == sprung.identify(made, tracks="shared", extras=(), amplitude=True).to_json()

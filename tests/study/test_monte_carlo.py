@@ -42,6 +42,7 @@ def study(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, sprung.study.
 Study = tuple[Path, sprung.study.MonteCarlo]
 
 
+@pytest.mark.slow
 def test_figures_are_those_of_the_estimates(study: Study) -> None:
     folder, found = study
     values = np.array(_column(folder, "k_sf"))
@@ -71,6 +72,7 @@ def test_every_campaign_has_its_own_noise_and_weighing(study: Study) -> None:
     assert abs(masses.mean() - TABLE_1_CAR.total_mass) < 4 * 5 / np.sqrt(8)
 
 
+@pytest.mark.slow
 def test_more_campaigns_go_on(study: Study) -> None:
     folder, found = study
     more = sprung.study.monte_carlo(TABLE_1_CAR, TEST, 9, 1, output=folder)

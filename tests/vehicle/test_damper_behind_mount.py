@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
@@ -63,6 +64,7 @@ def rates_of_change(state: Array) -> Array:
 STATE = np.random.default_rng(2).standard_normal(18) * np.repeat([0.02, 0.0, 0.3], [7, 4, 7])
 
 
+@pytest.mark.slow
 def test_a_damper_curve_behind_a_mount_follows_newtons_equations() -> None:
     """A quarter of the step leaves a sixteenth of the error, of which 3e-4 of the motion are left at 0.5 ms."""
     times = np.arange(41) * 0.01
