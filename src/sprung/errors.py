@@ -253,7 +253,7 @@ def record_failure(
         omissions.append(sentence)
 
 
-def did_you_mean(word: str, allowed: Iterable[str], *, listed: bool = False) -> str:
+def did_you_mean(word: str, allowed: Iterable[str], *, listed: bool = False, heading: str = "Allowed") -> str:
     """Return a sentence with the allowed word that was probably meant.
 
     Parameters
@@ -264,28 +264,53 @@ def did_you_mean(word: str, allowed: Iterable[str], *, listed: bool = False) -> 
         The allowed words.
     listed
         Whether the message lists them already, as what is expected.
+    heading
+        What stands before the list of the allowed words.
 
     Returns
     -------
     str
-        ``Did you mean 'wheels'?`` if one is close, or the one of which the word's initials are, as of "rear right" those are
-        rr; all of them if several are equally close; otherwise the allowed words, unless they are listed already.
+        ``Did you mean 'wheels'?`` if some are `closest_words`; otherwise the allowed words, unless they are listed already.
+    """
+    allowed = sorted(set(allowed))
+    if meant := [f"'{name}'" for name in closest_words(word, allowed)]:
+        return f"Did you mean {enumerated(meant, 'or')}?"
+    if not allowed:
+        return "Nothing is allowed here."
+    return "Write one of these." if listed else f"{heading}: {', '.join(allowed)}."
+
+
+def closest_words(word: str, allowed: Iterable[str]) -> list[str]:
+    """Return the allowed words that were probably meant.
+
+    Parameters
+    ----------
+    word
+        The word.
+    allowed
+        The allowed words.
+
+    Returns
+    -------
+    list of str
+        The one of which the word's initials are, as of "rear right" those are rr; or the one with the fewest typing errors,
+        all of them if two are equally close; none if none is close.
+
+    Examples
+    --------
+    >>> closest_words("wheel", ["wheels", "height"])
+    ['wheels']
     """
     allowed = sorted(set(allowed))
     initials = "".join(part[0] for part in re.split(r"[\W_]+", word.lower()) if part)
     if initials in allowed and len(initials) > 1:
-        return f"Did you mean '{initials}'?"
+        return [initials]
     close = difflib.get_close_matches(word.lower(), [name.lower() for name in allowed], n=_CANDIDATES, cutoff=0.6)
-    if close:
-        # Their order is by common letters, which does not distinguish exchanged letters from wrong ones.
-        errors = {name: _typing_errors(word.lower(), name) for name in close}
-        nearest = [name for name in errors if errors[name] == min(errors.values())]
-        nearest = nearest[: 1 if len(nearest) > _MOST_ALIKE else None]  # of many that are as close none is meant more
-        meant = [f"'{name}'" for name in allowed if name.lower() in nearest]
-        return f"Did you mean {enumerated(meant, 'or')}?"
-    if not allowed:
-        return "Nothing is allowed here."
-    return "Write one of these." if listed else f"Allowed: {', '.join(allowed)}."
+    # Their order is by common letters, which does not distinguish exchanged letters from wrong ones.
+    errors = {name: _typing_errors(word.lower(), name) for name in close}
+    nearest = [name for name in errors if errors[name] == min(errors.values())]
+    nearest = nearest[: 1 if len(nearest) > _MOST_ALIKE else None]  # of many that are as close none is meant more
+    return [name for name in allowed if name.lower() in nearest]
 
 
 def _typing_errors(written: str, meant: str) -> int:

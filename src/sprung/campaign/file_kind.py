@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from sprung.campaign.schema import CampaignFile, VehicleFileSchema
-from sprung.errors import did_you_mean
+from sprung.errors import closest_words
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -39,5 +39,6 @@ def find_parameters_section(document: Mapping[str, Any]) -> str | None:
     if PARAMETERS_SECTION in document:
         return PARAMETERS_SECTION
     known = {field.alias or name for name, field in VehicleFileSchema.model_fields.items()}
-    meant = f"Did you mean '{PARAMETERS_SECTION}'?"
-    return next((key for key in document if key not in known and did_you_mean(key, known) == meant), None)
+    return next(
+        (key for key in document if key not in known and closest_words(key, known) == [PARAMETERS_SECTION]), None
+    )

@@ -153,7 +153,7 @@ def _check_signals(
     wanted = {file for names in files.values() for file in names}
     for name in signals:
         if name not in wanted and parsed.complete("drop"):
-            do = did_you_mean(name, wanted - set(signals)).replace("Allowed:", "Without signals:")
+            do = did_you_mean(name, wanted - set(signals), heading="Without signals")
             problems.add("signals", f"'{name}', which no drop has", "the name of a drop's recording", do)
 
 
@@ -173,7 +173,7 @@ def _check_channels(
                 where,
                 f"'{sensor.channel}', which no recording has",
                 expected,
-                did_you_mean(sensor.channel, unclaimed or columns).replace("Allowed:", "They have:"),
+                did_you_mean(sensor.channel, unclaimed or columns, heading="They have"),
             )
 
 

@@ -177,7 +177,7 @@ def _channel(
     if not columns:
         what = f"the recording has no column '{sensor.channel}'; the channel is left out of this drop"
         unclaimed = set(table.channels) - {split_unit(other.channel)[0] for other in sensors}
-        meant = f" {did_you_mean(sensor.channel, unclaimed)}".replace("Allowed:", "It also has:") if unclaimed else ""
+        meant = f" {did_you_mean(sensor.channel, unclaimed, heading='It also has')}" if unclaimed else ""
         return Fault("missing", where, what, f"Check the sensor's cable and the logger's channel names.{meant}")
     if len(columns) > 1:
         found, do = f"{len(columns)} columns of that name", "Rename the columns in the file."

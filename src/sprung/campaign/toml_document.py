@@ -25,7 +25,7 @@ def read_toml(path: Path) -> dict[str, Any]:
         text = path.read_bytes().decode("utf-8-sig")
     except FileNotFoundError:
         beside = [other.name for other in path.parent.glob("*.toml")]
-        do = did_you_mean(path.name, beside).replace("Allowed:", "There are:")
+        do = did_you_mean(path.name, beside, heading="There are")
         if not beside and any(other.is_dir() or other.is_file() for other in path.parent.glob("[!.]*")):
             do = f"Draft it from the recordings: `sprung new {shlex.quote(str(path.parent))}`."
         elif not beside:

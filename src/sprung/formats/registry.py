@@ -137,7 +137,7 @@ def _head(path: Path, others: Collection[str]) -> bytes:
         beside = [name for name in beside if name not in others]
         do = "Put the recordings there, or correct the path."
         if beside:
-            do = did_you_mean(path.name, beside).replace("Allowed:", "There are:")
+            do = did_you_mean(path.name, beside, heading="There are")
         problem = Problem(path.name, f"no such file in {path.parent}", "a recording", do)
     except IsADirectoryError:
         problem = Problem(path.name, "a folder", "a recording", "Name the file in it.")
