@@ -8,7 +8,7 @@ from dataclasses import replace
 from sprung.analysis.analysis import MOST_RESTARTS, Analysis
 from sprung.analysis.baseline import begun_no_earlier, converged, explains_beginnings
 from sprung.analysis.correcting import restart_corrected
-from sprung.analysis.first_term import explaining_term, rivalling_term
+from sprung.analysis.first_term import explaining_term, rivalling_term, rivalling_usual_terms
 from sprung.analysis.on_pads import has_pads
 from sprung.analysis.preparation import preprocess
 from sprung.analysis.settling import settle_corrections
@@ -80,9 +80,9 @@ def isolate_evident_faults(run: Analysis, progress: Progress) -> Analysis:
 
 def _restart_without_rival(run: Analysis, progress: Progress) -> Analysis:
     """Correct evident faults and start again, unless a model term may explain more: it is tried first."""
-    rival = rivalling_term(run) or _body_given_up(run, progress)
+    rival = rivalling_term(run) or rivalling_usual_terms(run) or _body_given_up(run, progress)
     if rival is not None:
-        return run.noted("isolate_evident_faults", f"{rival[0]} is tried before anything is corrected", rival[1])
+        return run.noted("isolate_evident_faults", f"{rival[0]}: tried before anything is corrected", rival[1])
     again = restart_corrected(run, run.found, "isolate_evident_faults")
     last = run.found[-1].candidate
     if run.without_wheels is None or not last.is_explained:

@@ -6,13 +6,16 @@ from sprung.analysis.analysis import Analysis
 from sprung.estimation import NEAR
 from sprung.faults import CandidateFit, Consistency, largest_expected_gain, largest_gain_by_steps
 from sprung.progress import silent
-from sprung.selection import TERMS, ModelSearch, fit_structure, score_terms
+from sprung.selection import TERMS, ModelSearch, fit_structure, fit_usual_linear_terms, score_terms
 
 _MOST = 0.5
 """Share of a misfit that a model term has to explain by a few steps to be fitted before faults are isolated."""
 
 _STEPS, _TERMS = 3, 3
 """Gauss-Newton steps that are taken with each of so many terms."""
+
+_SEVERAL = 2
+"""Faults that together explain the recordings, from which usual terms are tried first that explain more."""
 
 
 def explaining_term(run: Analysis, consistency: Consistency) -> tuple[str, str] | None:
@@ -70,6 +73,29 @@ def rivalling_term(run: Analysis) -> tuple[str, str] | None:
     fault = base.table.cost - run.found[-1].table.cost
     why = f"it is expected to gain {expected[best]:.0f}, the faults {fault:.0f}"
     return (best, why) if expected[best] > fault else None
+
+
+def rivalling_usual_terms(run: Analysis) -> tuple[str, str] | None:
+    """Return the usual linear terms that explain more than several faults do, and why they are tried; None where none do.
+
+    That several things are wrong at once is less likely than that a vehicle has what most vehicles have. Where the fit is far
+    from the recordings no score shows it.
+
+    Parameters
+    ----------
+    run
+        With faults that explain the recordings wholly.
+    """
+    if len(run.found) < _SEVERAL or run.model.structure.is_time_stepped:
+        return None
+    found = fit_usual_linear_terms(run.model)
+    with_terms = CandidateFit.of(found.structure, run.decays, found.fit)
+    cost = CandidateFit.of(run.model.structure, run.decays, run.fit).table.cost
+    gain, by_faults = cost - with_terms.table.cost, cost - run.found[-1].table.cost
+    if gain < by_faults or not with_terms.is_explained:
+        return None
+    terms = ", ".join(term for term in found.structure.terms if term not in run.model.structure.terms)
+    return terms, f"an ordinary vehicle with all of them gains {gain:.0f}, {len(run.found)} faults gain {by_faults:.0f}"
 
 
 def _expected_gains(model: ModelSearch, *, linear: bool) -> tuple[ModelSearch, dict[str, float]]:

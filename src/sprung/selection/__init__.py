@@ -12,6 +12,7 @@ from sprung.selection.error_budget import FALSE_ALARM_SHARE, OVERDISPERSED, requ
 from sprung.selection.finite_rotation import REQUIRED_OF_ROTATION, select_finite_rotation
 from sprung.selection.from_ordinary_vehicle import (
     fit_flexible_bodies,
+    fit_usual_linear_terms,
     or_with_usual_linear_terms,
     select_flexible_body,
 )
@@ -78,6 +79,7 @@ __all__ = [
     "fit_requested_terms",
     "fit_structure",
     "fit_term",
+    "fit_usual_linear_terms",
     "from_contact",
     "furthest_from_stated",
     "is_likelier",

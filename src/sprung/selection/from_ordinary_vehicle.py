@@ -87,11 +87,9 @@ def or_with_usual_linear_terms(search: ModelSearch) -> ModelSearch:
     ModelSearch
         As given where it leaves noise alone, or they leave more.
     """
-    usual = [term for term in _usual_terms(search.structure) if TERMS[term].is_linear and not TERMS[term].refines]
-    if not usual or not search.is_overdispersed:
+    tried = fit_usual_linear_terms(search) if search.is_overdispersed else search
+    if tried is search:
         return search
-    search.progress(Step(f"fitting an ordinary vehicle with {', '.join(usual)}"))
-    tried = fit_from_ordinary_vehicle(search, search.with_terms(usual))
     if search.leaves_misfit(tried.fit, MISFIT_LEFT):
         return search
     tried = from_contact(tried)
@@ -99,6 +97,26 @@ def or_with_usual_linear_terms(search: ModelSearch) -> ModelSearch:
         return search
     needed, gains = leave_out_unneeded(tried, search)
     return from_contact(needed.recorded(gains, True, True)) if gains else search
+
+
+def fit_usual_linear_terms(search: ModelSearch) -> ModelSearch:
+    """Fit an ordinary vehicle with every usual linear term about which the recordings decide.
+
+    Parameters
+    ----------
+    search
+        The present model and its fit, linear.
+
+    Returns
+    -------
+    ModelSearch
+        As given where there is none.
+    """
+    usual = [term for term in _usual_terms(search.structure) if TERMS[term].is_linear and not TERMS[term].refines]
+    if not usual:
+        return search
+    search.progress(Step(f"fitting an ordinary vehicle with {', '.join(usual)}"))
+    return fit_from_ordinary_vehicle(search, search.with_terms(usual))
 
 
 def _usual_terms(structure: ModelStructure) -> tuple[str, ...]:

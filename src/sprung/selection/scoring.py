@@ -77,8 +77,8 @@ def score_terms(search: ModelSearch, terms: Sequence[str]) -> tuple[ModelSearch,
     return search, scores
 
 
-def most_promising(search: ModelSearch, terms: Sequence[str], most: int) -> list[str]:
-    """Return the terms whose scores promise more than is required of them.
+def most_promising(search: ModelSearch, terms: Sequence[str], most: int, least: float = 1.0) -> dict[str, float]:
+    """Return the terms whose scores promise more than is required of them, and what they promise as a part of that.
 
     Parameters
     ----------
@@ -88,15 +88,18 @@ def most_promising(search: ModelSearch, terms: Sequence[str], most: int) -> list
         Open terms.
     most
         How many at the most.
+    least
+        Part of what is required that they have to promise.
 
     Returns
     -------
-    list of str
+    dict
         Best first.
     """
     _, scores = score_terms(search, terms)
-    ratios = {term: gain / (search.required(term) * search.overdispersion) for term, (gain, _) in scores.items()}
-    return sorted((term for term in terms if ratios[term] > 1), key=lambda term: -ratios[term])[:most]
+    ratios = {term: scores[term][0] / (search.required(term) * search.overdispersion) for term in terms}
+    best = sorted((term for term in terms if ratios[term] > least), key=lambda term: -ratios[term])[:most]
+    return {term: ratios[term] for term in best}
 
 
 def _linear(search: ModelSearch, terms: Sequence[str]) -> tuple[ModelSearch, Scores]:
