@@ -12,7 +12,7 @@ from functools import partial
 
 from sprung.progress import Step
 from sprung.selection.contact import from_contact, is_likelier
-from sprung.selection.error_budget import MISFIT_LEFT, MISFIT_LEFT_AT_FIRST
+from sprung.selection.error_budget import MISFIT_LEFT
 from sprung.selection.from_ordinary_vehicle import (
     fit_flexible_bodies,
     select_beside_usual_terms,
@@ -30,7 +30,8 @@ from sprung.selection.term_fits import begin_nonlinear_fit, fit_term, select_gra
 from sprung.selection.terms import TERMS
 
 _TRIED_FIRST, _BASES = 3, 2
-"""Nonlinear terms of which the likeliest is fitted first; and bases from which the search goes on, until one leaves little."""
+"""Parts whose laws are compared first, as scores do not tell laws of one part apart; and bases from which the search goes on,
+until one leaves little."""
 
 SearchFromBase = Callable[[ModelSearch], ModelSearch]
 """A search for nonlinear terms, given the search so far for what it has tried."""
@@ -59,7 +60,7 @@ def select_nonlinear_terms(search: ModelSearch, plain: ModelStructure) -> ModelS
     search, scores = score_terms(search, terms)
     search, ranked = rank_terms(search, scores, 1.0)
     best, steps = search, search.steps
-    for select in _searches(search, plain, terms, ranked[:_TRIED_FIRST]):
+    for select in _searches(search, plain, terms, _of_first_parts(ranked)):
         found = select(replace(search, steps=steps))
         steps = found.steps
         if found.fault is not None:
@@ -83,6 +84,12 @@ def select_nonlinear_terms(search: ModelSearch, plain: ModelStructure) -> ModelS
     gone = {term: gains.get(term, 0.0) for term in search.selected if term not in best.selected}
     best = replace(best, steps=steps).recorded(gone, True, False, f"it is not needed beside {beside}")
     return select_gravity_leakage(best) if best.structure.is_nonlinear else best
+
+
+def _of_first_parts(ranked: Sequence[str]) -> list[str]:
+    """Return those of some nonlinear terms, best first, that are laws of the first few parts."""
+    first = [*dict.fromkeys(TERMS[term].part or term for term in ranked)][:_TRIED_FIRST]
+    return [term for term in ranked if (TERMS[term].part or term) in first]
 
 
 def _searches(
@@ -124,7 +131,7 @@ def _searches(
     flexible = [term for term in FLEXIBLE_BODIES if term in refused]
     for body in fit_flexible_bodies(simplest, flexible).values() if is_of_no_use else ():
         yield partial(_with_usual_terms, body, plain)
-    if is_of_no_use or (search.lacks_something and refused):
+    if is_of_no_use or search.lacks_something:
         yield partial(_from_likeliest_beginning, bases, terms)
 
 
@@ -205,13 +212,15 @@ def _from_likeliest_beginning(bases: Sequence[ModelSearch], terms: Sequence[str]
     if not ranked:
         return search
     # What part there is makes more of a difference than which law a spring or damper has.
-    first = [(_with_first_steps(base, promising[0]), base, promising[1:_TRIED_FIRST]) for base, promising in ranked]
+    first = [
+        (_with_first_steps(base, promising[0]), base, _of_first_parts(promising)[1:]) for base, promising in ranked
+    ]
     best = search
     for likeliest, base, others in sorted(first, key=lambda one: -one[0].fit.loglikelihood)[:_BASES]:
         ends = [likeliest, *(_with_first_steps(base, term) for term in others)]
         start = max(ends, key=lambda one: one.fit.loglikelihood)
         start = likeliest_or_ordinary(search, [start], start.structure)
-        if search.leaves_misfit(start.fit, MISFIT_LEFT_AT_FIRST):
+        if search.leaves_most(start.fit):
             break
         found = _select_from_start(replace(search, steps=best.steps), start)
         best = found if is_likelier(found, best) else replace(best, steps=found.steps)

@@ -10,7 +10,6 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 
 from sprung.estimation import NEAR, UsualValue, VehicleSize, fit_linear, usual_vehicle
-from sprung.selection.error_budget import MISFIT_LEFT_AT_FIRST
 from sprung.selection.linear_terms import FLEXIBLE_BODIES
 from sprung.selection.search import ModelSearch
 from sprung.selection.starts import fit_structure, start_values
@@ -327,7 +326,7 @@ def fit_usual_terms(search: ModelSearch, rich: ModelStructure, *, with_lost: boo
 def _fit_beginnings(search: ModelSearch, start: ModelSearch, structure: ModelStructure) -> ModelSearch | None:
     """Fit a structure from a start; None where much of the misfit is left after some steps."""
     found = _refit_beginnings(search, start, structure, _FIRST_ITERATIONS)
-    if search.leaves_misfit(found.fit, MISFIT_LEFT_AT_FIRST):
+    if search.leaves_most(found.fit):
         return None
     return found if found.fit.converged else _refit_beginnings(search, found, structure)
 

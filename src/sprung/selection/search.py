@@ -13,7 +13,14 @@ from sprung.assessment import estimate_model_error
 from sprung.estimation import NEAR, FitResult, per_total_mass, unexplained_squares, wald_test
 from sprung.preprocess import FreeDecay
 from sprung.progress import Progress, silent
-from sprung.selection.error_budget import LEAST_SHARE, MODEL_ERROR, OVERDISPERSED, UNEXPLAINED, required_gain
+from sprung.selection.error_budget import (
+    LEAST_SHARE,
+    MISFIT_LEFT_AT_FIRST,
+    MODEL_ERROR,
+    OVERDISPERSED,
+    UNEXPLAINED,
+    required_gain,
+)
 from sprung.selection.linear_terms import SEPARATE_TRACKS
 from sprung.selection.selection_step import SelectionStep
 from sprung.selection.sensor_errors import SensorError
@@ -391,11 +398,24 @@ class ModelSearch:
 
     def leaves_misfit(self, fit: FitResult, part: float) -> bool:
         """Whether another fit, of the decays or their beginnings, leaves more than a part of this one's model error there."""
+        before, after = self._much_left(fit)
+        # Of a motion without bounds the part is no number.
+        return bool(before.size) and not float(after.sum()) <= part * float(before.sum())
+
+    def leaves_most(self, fit: FitResult) -> bool:
+        """Whether another fit, on its way, leaves most of this one's model error: of all channels together, and in their mean.
+
+        What one sensor shows above all others, a wheel what its tyre does, may be what a further term explains.
+        """
+        before, after = self._much_left(fit)
+        in_mean = bool(before.size) and not float((after / before).mean()) <= MISFIT_LEFT_AT_FIRST
+        return in_mean and self.leaves_misfit(fit, MISFIT_LEFT_AT_FIRST)
+
+    def _much_left(self, fit: FitResult) -> tuple[Real, Real]:
+        """Return what this fit and another one leave, over the noise, in the channels in which this one leaves much."""
         before, after = self._model_errors(fit)
         much = (self.sensor_noise > 0) & (before > self.sensor_noise)
-        # Of a motion without bounds the part is no number.
-        weights = 1 / self.sensor_noise[much]
-        return bool(much.any()) and not float(after[much] @ weights) <= part * float(before[much] @ weights)
+        return before[much] / self.sensor_noise[much], after[much] / self.sensor_noise[much]
 
     def is_better_than(self, fit: FitResult) -> bool:
         """Whether another fit, of the decays or their beginnings, leaves more in some channel there, by more than the noise."""

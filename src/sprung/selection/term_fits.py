@@ -12,7 +12,7 @@ import numpy as np
 
 from sprung.estimation import NEAR, FitResult, fit_linear
 from sprung.progress import Step
-from sprung.selection.error_budget import MISFIT_LEFT, MISFIT_LEFT_AT_FIRST, MISFIT_LEFT_BESIDE
+from sprung.selection.error_budget import MISFIT_LEFT, MISFIT_LEFT_BESIDE
 from sprung.selection.linear_terms import ENGINE
 from sprung.selection.ordinary_vehicle import (
     ITERATIONS,
@@ -214,14 +214,10 @@ def fit_nonlinear_term(search: ModelSearch, larger: ModelStructure, first: FitRe
 
     Where it does, the linear fit may have gone too far astray to begin from: the wheels then keep their masses at first.
     """
-    if (
-        search.leaves_misfit(first, MISFIT_LEFT_AT_FIRST)
-        and search.is_misfit_large
-        and not search.structure.is_nonlinear
-    ):
+    if search.leaves_most(first) and search.is_misfit_large and not search.structure.is_nonlinear:
         held = begin_nonlinear_fit(_begin_with_held_wheels(search, larger), larger)
         first = max(first, held, key=lambda fit: fit.loglikelihood)
-    if search.leaves_misfit(first, MISFIT_LEFT_AT_FIRST):
+    if search.leaves_most(first):
         return None
     if not (first.converged or search.lacks_something) and search.is_better_than(first):
         return None  # on the way from a usual size to none
