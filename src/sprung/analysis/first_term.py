@@ -70,9 +70,10 @@ def rivalling_term(run: Analysis) -> tuple[str, str] | None:
     if best is None or expected[best] < search.required(best):
         return None
     base = CandidateFit.of(run.model.structure, run.decays, run.fit)
-    fault = base.table.cost - run.found[-1].table.cost
-    why = f"it is expected to gain {expected[best]:.0f}, the faults {fault:.0f}"
-    return (best, why) if expected[best] > fault else None
+    # Drops that disagree count less against chance only: what the faults gain makes them agree.
+    term, fault = expected[best] * run.model.fit.disagreement, base.table.cost - run.found[-1].table.cost
+    why = f"it is expected to gain {term:.0f}, the faults {fault:.0f}"
+    return (best, why) if term > fault else None
 
 
 def rivalling_usual_terms(run: Analysis) -> tuple[str, str] | None:

@@ -6,9 +6,10 @@ from sprung.assessment.cross_validation import DropValidation, cross_validate_dr
 from sprung.assessment.mode_tracking import AmplitudeCurve
 from sprung.assessment.model_error import estimate_model_error
 from sprung.assessment.residuals import ResidualStatistics, describe_residuals, estimate_noise_level
-from sprung.assessment.verdict import State, Verdict, decide_verdict
+from sprung.assessment.verdict import EXPLAINED, State, Verdict, decide_verdict
 
 __all__ = [
+    "EXPLAINED",
     "MOTIONS",
     "AmplitudeCurve",
     "BodyMotion",

@@ -113,7 +113,7 @@ def _searches(
     if ranked:
         yield partial(_from_base, simplest, ranked)
     # Of a vehicle that nobody would recognise unlikely gains of its sensors may hide how much is left.
-    is_of_no_use = search.is_misfit_large or not is_ordinary(search)
+    is_of_no_use = search.is_doubtful or not is_ordinary(search)
     if is_of_no_use:
         yield partial(_with_law_of_dampers, search, plain)
         yield partial(_with_usual_terms, search, plain)

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from sprung.assessment import estimate_model_error
+from sprung.assessment import EXPLAINED, estimate_model_error
 from sprung.estimation import NEAR, FitResult, per_total_mass, unexplained_squares, wald_test
 from sprung.preprocess import FreeDecay
 from sprung.progress import Progress, silent
@@ -234,6 +234,11 @@ class ModelSearch:
         """
         model_error, _ = estimate_model_error(self.fit)
         return float(np.sort(model_error)[-2:].min()) > UNEXPLAINED
+
+    @cached_property
+    def is_doubtful(self) -> bool:
+        """Whether the model does not explain what some channel records, so that its parameters would not be accepted."""
+        return self.is_overdispersed and float(estimate_model_error(self.fit)[0].max()) > EXPLAINED
 
     @property
     def is_overdispersed(self) -> bool:
