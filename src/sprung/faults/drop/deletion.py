@@ -72,8 +72,11 @@ class DropDeletion:
         return self.table(variance * self.counts)
 
     def hypotheses(self) -> Iterator[Hypothesis]:
-        """Yield what may be wrong with the drop, each with the residuals that it predicts."""
-        for kind in self.kinds:
+        """Yield what may be wrong with the drop, each with the residuals that it predicts.
+
+        None if it is the only one with its load: of that the others say nothing.
+        """
+        for kind in self.kinds if self.decay.load in self.candidate.models else ():
             yield from kind(self)
 
     def table(self, residual: Real, counts: Real | None = None) -> ResidualTable:
