@@ -124,8 +124,9 @@ class FitResult:
 
     @cached_property
     def loglikelihood(self) -> float:
-        """Up to a constant."""
-        return -0.5 * self.problem.cost(self.iterate)
+        """Up to a constant; minus infinity for a motion without bounds."""
+        cost = self.problem.cost(self.iterate)
+        return -0.5 * cost if np.isfinite(cost) else -np.inf
 
     @cached_property
     def remaining_gain(self) -> float:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from sprung.selection.contact import without_landings
 from sprung.selection.error_budget import MISFIT_LEFT_BESIDE
 from sprung.selection.ordinary_vehicle import ITERATIONS
 from sprung.selection.scoring import most_promising
@@ -44,7 +45,8 @@ def _unexplained_drops(search: ModelSearch) -> UnlikeDrops | None:
     Drops that are the only ones to roll stand out where what is missing shows in roll alone.
     """
     unlike = find_unlike_drops(search)
-    if unlike is None:
+    # A vehicle that lacked something may have let a decay begin before its last wheel is down.
+    if unlike is None or not outstanding_drops(without_landings(search)):
         return None
     for term in most_promising(search, search.open_terms(tuple(TERMS)), _TRIED):
         tried = search.refit(search.with_terms([term]), ITERATIONS, beginning_only=True)

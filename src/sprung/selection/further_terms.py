@@ -13,7 +13,7 @@ from sprung.preprocess import FreeDecay
 from sprung.selection.contact import from_contact, without_landings
 from sprung.selection.evident_faults import with_evident_fault
 from sprung.selection.low_pass import confirm_low_pass, select_low_pass
-from sprung.selection.scoring import WORTH_A_FIT, most_promising
+from sprung.selection.scoring import most_promising
 from sprung.selection.search import ModelSearch
 from sprung.selection.stepwise import try_likeliest, try_term
 from sprung.selection.term_fits import take_first_step
@@ -127,9 +127,7 @@ def _try_scored(search: ModelSearch, tried: Collection[str]) -> tuple[ModelSearc
     rivals = _rivals(untried)
     terms = [term for term in untried if term not in rivals]
     fitted: list[str] = []
-    # Large and small motions that disagree, as little as noise, may do so for want of the term itself: a step shows that.
-    least = 1 / WORTH_A_FIT if search.is_misfit_small else 1.0
-    for term, promised in most_promising(search, terms, _TRIED_BESIDE, least).items():
+    for term, promised in most_promising(search, terms, _TRIED_BESIDE).items():
         if term in fitted:
             continue
         first = None

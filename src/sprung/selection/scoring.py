@@ -77,8 +77,8 @@ def score_terms(search: ModelSearch, terms: Sequence[str]) -> tuple[ModelSearch,
     return search, scores
 
 
-def most_promising(search: ModelSearch, terms: Sequence[str], most: int, least: float = 1.0) -> dict[str, float]:
-    """Return the terms whose scores promise more than is required of them, and what they promise as a part of that.
+def most_promising(search: ModelSearch, terms: Sequence[str], most: int) -> dict[str, float]:
+    """Return the terms whose scores promise what is required of them, and how many times that.
 
     Parameters
     ----------
@@ -88,14 +88,14 @@ def most_promising(search: ModelSearch, terms: Sequence[str], most: int, least: 
         Open terms.
     most
         How many at the most.
-    least
-        Part of what is required that they have to promise.
 
     Returns
     -------
     dict
-        Best first.
+        Best first. Where what is left is no noise also those that promise a part of it: drops, or large and small motions, may
+        disagree for want of the term itself, which a step or a fit shows.
     """
+    least = 1 / WORTH_A_FIT if search.is_overdispersed else 1.0
     _, scores = score_terms(search, terms)
     ratios = {term: scores[term][0] / (search.required(term) * search.overdispersion) for term in terms}
     best = sorted((term for term in terms if ratios[term] > least), key=lambda term: -ratios[term])[:most]

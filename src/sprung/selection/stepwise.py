@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import replace
-from math import inf
+from math import inf, isfinite
 
 from sprung.estimation import FitResult
 from sprung.selection.backward_elimination import counterpart_of, leave_out_unneeded
@@ -192,7 +192,7 @@ def try_likeliest(search: ModelSearch, terms: Sequence[str], least: float = 0.0)
         if gain < least:
             return search.recorded(dict.fromkeys(terms, 0.0), True, False, "a low-pass of the loggers explains more")
     against = f"{likeliest} explains the beginnings of the decays better"
-    if not search.structure.is_nonlinear:
+    if not search.structure.is_nonlinear and isfinite(first[likeliest].loglikelihood):
         tried = replace(search, structure=search.with_terms([likeliest]), fit=first[likeliest])
         if (fault := with_evident_fault(tried).fault) is not None:
             return replace(search, fault=fault)
