@@ -16,6 +16,7 @@ from sprung.selection.low_pass import confirm_low_pass, select_low_pass
 from sprung.selection.scoring import most_promising
 from sprung.selection.search import ModelSearch
 from sprung.selection.stepwise import try_likeliest, try_term
+from sprung.selection.structure import ModelStructure
 from sprung.selection.term_fits import take_first_step
 from sprung.selection.terms import TERMS
 
@@ -72,10 +73,12 @@ def select_terms_in_whole(early: ModelSearch, decays: Sequence[FreeDecay]) -> Mo
     ]
     search = from_contact(replace(early, decays=whole), on_the_way=True)
     # What leaves so much is not the vehicle: another base may lead to it, and further terms beside this one would be slow.
-    return search if early.lacks_something else select_further_terms(search, whole=True)
+    if early.lacks_something:
+        return search
+    return select_further_terms(search, whole=True, decided=search.structure if early.is_overdispersed else None)
 
 
-def select_further_terms(search: ModelSearch, whole: bool) -> ModelSearch:
+def select_further_terms(search: ModelSearch, whole: bool, decided: ModelStructure | None = None) -> ModelSearch:
     """Try terms and a low-pass round after round, until none is accepted.
 
     Parameters
@@ -83,15 +86,16 @@ def select_further_terms(search: ModelSearch, whole: bool) -> ModelSearch:
     search
         The present model and its fit.
     whole
-        Whether the beginnings of the decays have decided already: only scores are looked at, until they show another term.
+        Whether these are whole decays, not their beginnings.
+    decided
+        Model beside which what shows in no score was tried in the beginnings, where knees are passed and friction turns round
+        most often: only scores are looked at, until they show another term.
 
     Returns
     -------
     ModelSearch
     """
     tried: frozenset[str] = frozenset()
-    # Knees are passed and friction turns round most often in the beginnings: what shows in no score was tried there.
-    decided = search.structure if whole else None
     for _ in range(_FURTHER_ROUNDS):
         if not search.structure.is_nonlinear:
             break

@@ -184,7 +184,9 @@ def try_likeliest(search: ModelSearch, terms: Sequence[str], least: float = 0.0)
     ModelSearch
     """
     first = {term: begin_nonlinear_fit(search, search.with_terms([term])) for term in terms}
-    likeliest = max(terms, key=lambda term: first[term].loglikelihood)
+    # A rate below zero may gain more than the part does that is really there.
+    physical = [term for term in terms if _is_physical(search, term, first[term])]
+    likeliest = max(physical or terms, key=lambda term: first[term].loglikelihood)
     if least > 0 and first[likeliest].converged:
         # The first steps are coarse in time, which a model without the term has to be as well.
         present = begin_nonlinear_fit(search, search.structure)
@@ -197,7 +199,19 @@ def try_likeliest(search: ModelSearch, terms: Sequence[str], least: float = 0.0)
         if (fault := with_evident_fault(tried).fault) is not None:
             return replace(search, fault=fault)
     others = dict.fromkeys((term for term in terms if term != likeliest), 0.0)
-    return try_term(search.recorded(others, True, False, against), likeliest, first=first[likeliest])
+    tried = try_term(search.recorded(others, True, False, against), likeliest, first=first[likeliest])
+    # What explains no less than before after some steps may beat what is still on its way to explain more.
+    onward = [term for term in others if not first[term].converged]
+    if tried.structure.names != search.structure.names or not onward or not search.structure.is_nonlinear:
+        return tried
+    likeliest = max(onward, key=lambda term: first[term].loglikelihood)
+    return try_term(tried, likeliest, first=first[likeliest])
+
+
+def _is_physical(search: ModelSearch, term: str, fit: FitResult) -> bool:
+    """Whether a fit gives no parameter of a term a value below zero that has none."""
+    names = TERMS[term].not_negative(search.structure.tracks, search.structure.layout)
+    return all(fit.parameters[name] >= 0 for name in names)
 
 
 def try_term(
