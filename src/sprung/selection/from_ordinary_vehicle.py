@@ -15,7 +15,7 @@ from sprung.selection.backward_elimination import hold_undetermined, leave_out_u
 from sprung.selection.contact import from_contact, is_likelier
 from sprung.selection.error_budget import MISFIT_LEFT
 from sprung.selection.evident_faults import with_evident_fault
-from sprung.selection.further_terms import select_terms_beside
+from sprung.selection.further_terms import laws_of_part, select_terms_beside
 from sprung.selection.linear_terms import FLEXIBLE_BODIES
 from sprung.selection.ordinary_vehicle import (
     ITERATIONS,
@@ -23,6 +23,7 @@ from sprung.selection.ordinary_vehicle import (
     fit_usual_terms,
     is_ordinary,
 )
+from sprung.selection.scoring import most_promising
 from sprung.selection.search import ModelSearch
 from sprung.selection.several_vehicles import divide_drops, of_group
 from sprung.selection.starts import start_variants
@@ -212,12 +213,25 @@ def select_beside_usual_terms(search: ModelSearch, rich: ModelStructure) -> Mode
     found = fit_usual_terms(search, rich)
     if found is not None and (found := with_evident_fault(found)).fault is not None:
         return found
+    if found is not None and search.leaves_misfit(found.fit, MISFIT_LEFT):
+        found = _with_likeliest_law(found)
     if found is None or search.leaves_misfit(found.fit, MISFIT_LEFT):
         against = "together they do not explain what the model so far leaves"
         terms = [term for term in rich.terms if TERMS[term].usual is not None]
         return search.recorded(dict.fromkeys(terms, 0.0), True, False, against)
     found = _without_unneeded(found)
     return select_terms_beside(found)
+
+
+def _with_likeliest_law(search: ModelSearch) -> ModelSearch:
+    """Add the nonlinear law that promises most beside all usual terms: of a spring, say, of which no size is usual."""
+    laws = search.open_terms([term for term, row in TERMS.items() if not row.is_linear])
+    ends = [
+        search.refit(search.with_terms([law]), ITERATIONS, beginning_only=True)
+        for term in most_promising(search, laws, 1)
+        for law in laws_of_part(term, laws)
+    ]
+    return max([search, *ends], key=lambda end: end.fit.loglikelihood)
 
 
 def _without_unneeded(search: ModelSearch) -> ModelSearch:

@@ -125,6 +125,25 @@ def select_further_terms(search: ModelSearch, whole: bool, decided: ModelStructu
     return search
 
 
+def laws_of_part(term: str, terms: Sequence[str]) -> list[str]:
+    """Return a term and those of others that are laws of the same part.
+
+    Parameters
+    ----------
+    term
+        Of them one.
+    terms
+        Open terms.
+
+    Returns
+    -------
+    list of str
+        The given one first.
+    """
+    part = TERMS[term].part
+    return [term, *(other for other in terms if other != term and part and TERMS[other].part == part)]
+
+
 def _try_scored(search: ModelSearch, tried: Collection[str]) -> tuple[ModelSearch, list[str]]:
     """Try open terms by their scores until one is accepted, but for those that no score tells from others; name the best."""
     untried = _untried(search, tried)
@@ -144,7 +163,7 @@ def _try_scored(search: ModelSearch, tried: Collection[str]) -> tuple[ModelSearc
                 search, fitted = search.recorded({term: gain}, bool(against), False, against), [*fitted, term]
                 continue
             first = stepped.fit if is_converged else None
-        laws = _laws_of_part(term, untried)
+        laws = laws_of_part(term, untried)
         fitted += laws
         tested = try_term(search, term, first=first) if laws == [term] else try_likeliest(search, laws)
         if tested.structure is not search.structure:
@@ -201,12 +220,6 @@ def _usual(terms: Sequence[str]) -> list[str]:
 def _parts(terms: Sequence[str]) -> list[str]:
     """Return the terms that are parts which vibrate by themselves: where they are nothing no score tells their place."""
     return [term for term in terms if TERMS[term].vibrates_by_itself]
-
-
-def _laws_of_part(term: str, terms: Sequence[str]) -> list[str]:
-    """Return a term and those of others that are laws of the same part."""
-    part = TERMS[term].part
-    return [term, *(other for other in terms if other != term and part and TERMS[other].part == part)]
 
 
 def _rivals(terms: Sequence[str]) -> list[str]:
