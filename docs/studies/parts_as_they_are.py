@@ -162,12 +162,12 @@ correct?
 
 Vehicles are drawn at random: quarter cars, pitch planes, roll planes and whole vehicles, each with one to three further
 properties of usual size. Sensors are drawn, too: accelerometers on body and wheels, displacement sensors in their place,
-travel sensors beside accelerometers or displacement sensors on the wheels, accelerometers with travel sensors; in a third a
-gyroscope besides. They have the default errors of gain, tilt and place, which in a third are stated to be zero. All are
-dropped four or five times from 3 to 6 cm; half of them also with a known load. The total mass is known.
-Recordings take 3 or 5 s at 400, 500 or 1000 Hz; noise is half to twice 0.02 m/s², 0.05 mm, 0.002 rad/s. `sprung.simulate`
-makes the recordings: unlike the [cars as they are](real-cars.md), the vehicles are those of the model that is fitted. A
-vehicle counts in the row of each of its properties.
+travel sensors beside accelerometers or displacement sensors on the wheels, accelerometers with travel sensors; besides a
+gyroscope in a third, and wherever nothing else would tell the roll of the body. They have the default errors of gain, tilt and
+place, which in a third are stated to be zero. All are dropped four or five times from 3 to 6 cm; half of them also with a known
+load. The total mass is known. Recordings take 3 or 5 s at 400, 500 or 1000 Hz; noise is half to twice 0.02 m/s², 0.05 mm,
+0.002 rad/s. `sprung.simulate` makes the recordings: unlike the [cars as they are](real-cars.md), the vehicles are those of the
+model that is fitted. A vehicle counts in the row of each of its properties.
 
 ## Results
 

@@ -199,7 +199,9 @@ def _sensors(draw: Draw, vehicle: Vehicle, readings: str) -> tuple[Sensor, ...]:
     turns = {"roll-plane": ("roll",), "pitch-plane": ("pitch",), "full": ("roll", "pitch"), "quarter": ()}[
         vehicle.model
     ]
-    if draw.random.random() < 1 / 3:
+    # Where nothing on the body says where it is, only a gyroscope tells its roll from the travel at the wheels.
+    has_gyroscope = draw.random.random() < 1 / 3 or (readings.startswith("travel") and "roll" in turns)
+    if has_gyroscope:
         found += tuple(
             Sensor(channel=f"gyro_{axis}", on="body", quantity="angular-rate", axis=axis)  # type: ignore[arg-type]
             for axis in turns

@@ -135,12 +135,17 @@ def leave_out_unneeded(
             if not last:
                 return tried, gains
             least = min(last, key=missed.__getitem__)
-            if (held := hold_undetermined(tried, least, undetermined[least])) is not None:
-                tried = tried.refit(held)
+            held = hold_undetermined(tried, least, undetermined[least])
+            again = tried if held is None else tried.refit(held)
+            if again is not tried and np.isfinite(again.fit.loglikelihood):
+                tried = again
                 continue
         larger, tried = tried, tried.recorded({least: gains[least]}, True, False, against[least])
         smaller = _with_counterpart(tried, least)
         tried = _back_to(before, tried, least) if smaller.names == before.structure.names else tried.refit(smaller)
+        if not np.isfinite(tried.fit.loglikelihood):
+            tried, kept = larger, {*kept, least}
+            continue
         if least in before.selected and tried.delta_bic(before) < 0:
             if not against[least] and larger.gain_over(tried) > larger.required(least):
                 # A Wald test says little of what a fit without the term loses where the term is not known well.

@@ -231,7 +231,9 @@ def fit_nonlinear_term(search: ModelSearch, larger: ModelStructure, first: FitRe
         if search.leaves_misfit(first, MISFIT_LEFT):
             return None
     if not search.structure.is_nonlinear:
-        return replace(search, fit=first).refit(larger)
+        found = replace(search, fit=first).refit(larger)
+        # A motion that stays within bounds for a while may not do so in whole decays.
+        return found if np.isfinite(found.fit.loglikelihood) else None
     early = replace(search, fit=first).refit(larger, most=_STEPS_FROM_BELOW)
     # What helped the beginnings a little may grow without bounds later, as a branch with a rate below zero does.
     return None if search.is_better_than(early.fit) else early.refit(larger)
