@@ -68,7 +68,7 @@ def select_nonlinear_terms(search: ModelSearch, plain: ModelStructure) -> ModelS
         # On the way through nonlinear terms linear ones may show that explain everything without them.
         is_result = found.structure.is_nonlinear or not found.lacks_something
         best = found if is_result and is_likelier(found, best) else best
-        if best is not search and not best.lacks_something:
+        if best is not search and not (best.lacks_something or best.is_doubtful):
             break
     for structure in _smaller_structures(best, plain) if best is not search else ():
         if not best.is_overdispersed or best.is_misfit_large:

@@ -209,9 +209,9 @@ def try_likeliest(search: ModelSearch, terms: Sequence[str], least: float = 0.0)
 
 
 def _is_physical(search: ModelSearch, term: str, fit: FitResult) -> bool:
-    """Whether a fit gives no parameter of a term a value below zero that has none."""
+    """Whether a fit does not end where a parameter of a term has a value below zero that has none."""
     names = TERMS[term].not_negative(search.structure.tracks, search.structure.layout)
-    return all(fit.parameters[name] >= 0 for name in names)
+    return not fit.converged or all(fit.parameters[name] >= 0 for name in names)
 
 
 def try_term(
