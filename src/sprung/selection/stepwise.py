@@ -17,7 +17,7 @@ from sprung.selection.contact import from_contact
 from sprung.selection.error_budget import MISFIT_LEFT, MISFIT_LEFT_BY_ALL
 from sprung.selection.evident_faults import with_evident_fault
 from sprung.selection.ordinary_vehicle import may_be_astray, or_from_ordinary_vehicle
-from sprung.selection.scoring import WORTH_A_FIT, Scores, score_terms
+from sprung.selection.scoring import WORTH_A_FIT, Scores, most_promising, score_terms
 from sprung.selection.search import ModelSearch
 from sprung.selection.term_fits import (
     begin_nonlinear_fit,
@@ -37,6 +37,8 @@ _ROUNDS = 2 * len(TERMS)
 
 _EXPLAINED = 0.7
 """Part of a small misfit's overdispersion that a term may leave: any term seems to explain some of an error of another kind."""
+
+_NOT_LIKE_NOISE = "what is left is no more like noise with it"
 
 _RIVALS, _RIVAL_SCORE = 2, 0.5
 """How many terms are fitted beside one that leaves a misfit, and their scores at the least, as a part of its score."""
@@ -247,6 +249,8 @@ def try_term(
     tried, against = _settled(search, tried, term)
     gain = tried.gain_over(search)
     enough = gain > search.required(term)
+    if against == _NOT_LIKE_NOISE and enough and larger.is_nonlinear:
+        tried, against = _with_one_more(search, tried)
     if against or not enough:
         return search.recorded({term: gain}, True, False, against)
     if larger.is_nonlinear:
@@ -277,8 +281,25 @@ def _settled(search: ModelSearch, tried: ModelSearch, term: str) -> tuple[ModelS
             tried = replace(tried, fit=replace(tried.fit, converged=True))
     if not tried.fit.converged:
         return tried, "the fit with it did not converge"
-    is_like_noise = not search.is_misfit_small or tried.overdispersion <= _EXPLAINED * search.overdispersion
-    return tried, "" if is_like_noise else "what is left is no more like noise with it"
+    return tried, "" if _is_more_like_noise(search, tried) else _NOT_LIKE_NOISE
+
+
+def _is_more_like_noise(search: ModelSearch, tried: ModelSearch) -> bool:
+    """Whether a larger model leaves what is more like noise, where what is left is small."""
+    return not search.is_misfit_small or tried.overdispersion <= _EXPLAINED * search.overdispersion
+
+
+def _with_one_more(search: ModelSearch, tried: ModelSearch) -> tuple[ModelSearch, str]:
+    """Return a nonlinear model with the likeliest term beside the one that was tried, if both together leave noise.
+
+    Of two properties that are both missing, neither alone leaves what is more like noise.
+    """
+    for other in most_promising(tried, tried.open_terms(tuple(TERMS)), 1):
+        larger = tried.with_terms([other])
+        both = fit_nonlinear_term(tried, larger, begin_nonlinear_fit(tried, larger))
+        if both is not None and both.fit.converged and _is_more_like_noise(search, both):
+            return both, ""
+    return tried, _NOT_LIKE_NOISE
 
 
 def _completed(
