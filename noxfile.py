@@ -134,6 +134,7 @@ def studies(session: nox.Session) -> None:
         "real_cars",
         "real_car_faults",
         "real_car_tests",
+        "parts_as_they_are",
         "fleets",
     ):
         session.run("python", f"docs/studies/{study}.py", *(session.posargs or ("--processes", "2")))

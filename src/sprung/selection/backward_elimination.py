@@ -143,14 +143,14 @@ def leave_out_unneeded(
         larger, tried = tried, tried.recorded({least: gains[least]}, True, False, against[least])
         smaller = _with_counterpart(tried, least)
         tried = _back_to(before, tried, least) if smaller.names == before.structure.names else tried.refit(smaller)
-        # A Wald test says little of what a fit without the term loses where the term is not known well. The fit before may be
-        # one of other samples.
-        is_fitted = smaller.names != before.structure.names or least in before.selected
-        is_missed = is_fitted and not against[least] and larger.gain_over(tried) > larger.required(least)
-        if is_missed or not np.isfinite(tried.fit.loglikelihood):
+        if not np.isfinite(tried.fit.loglikelihood):
             tried, kept = larger, {*kept, least}
             continue
         if least in before.selected and tried.delta_bic(before) < 0:
+            if not against[least] and larger.gain_over(tried) > larger.required(least):
+                # A Wald test says little of what a fit without the term loses where the term is not known well.
+                tried, kept = larger, {*kept, least}
+                continue
             # A new term beside which an old one means nothing does not replace it unless it explains as much.
             return replace(before, steps=tried.steps), {}
     return tried, {}
