@@ -45,10 +45,11 @@ def _unexplained_drops(search: ModelSearch) -> UnlikeDrops | None:
     Drops that are the only ones to roll stand out where what is missing shows in roll alone.
     """
     unlike = find_unlike_drops(search)
-    # A vehicle that lacked something may have let a decay begin before its last wheel is down.
-    if unlike is None or not outstanding_drops(without_landings(search)):
+    # A vehicle that lacked something may have let a decay begin before its last wheel is down: then only noise is left later.
+    if unlike is None or not without_landings(search).is_overdispersed:
         return None
-    for term in most_promising(search, search.open_terms(tuple(TERMS)), _TRIED):
+    promising = most_promising(search, search.open_terms(tuple(TERMS)), _TRIED)
+    for term in (term for term, promised in promising.items() if promised > 1):
         tried = search.refit(search.with_terms([term]), ITERATIONS, beginning_only=True)
         if not outstanding_drops(tried) or not search.leaves_misfit(tried.fit, MISFIT_LEFT_BESIDE):
             return None
