@@ -9,95 +9,29 @@ import os
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
-import time
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
-from pages import VERDICTS, arguments, figures, report_progress, run, table, write
-from real_cars import LIMIT
-from real_outcomes import TimeIsUpError, limit_of
+from pages import arguments, figures, report_progress, run, table, write
+from real_cars import LIMIT, STATES
+from real_outcomes import WIDE, Outcome, judge
 from rigs import EFFECTS, MODELS, READINGS, Rig, draw_rig
-
-import sprung
-
-STATES = (*VERDICTS, "failed")
-
-WIDE = 4.0
-"""Standard errors beyond which an error is named on the page."""
 
 
 class Judged(NamedTuple):
-    """What came of one campaign.
-
-    Attributes
-    ----------
-    rig
-        What was tested, and how.
-    verdict, reason
-        Of the result; ``failed`` and the exception where there is none.
-    model
-        Terms of the selected model.
-    faults
-        Code and place of each fault.
-    errors
-        Of each true parameter that was estimated: relative error, error in standard errors, and whether the 95 % interval
-        holds the truth.
-    seconds
-        Processor time.
-    """
+    """One campaign: what was tested, and what came of it."""
 
     rig: Rig
-    verdict: str
-    reason: str
-    model: tuple[str, ...] = ()
-    faults: tuple[str, ...] = ()
-    errors: dict[str, tuple[float, float, bool]] = {}  # noqa: RUF012 (a named tuple's default, never changed)
-    seconds: float = np.nan
-
-    @property
-    def widest(self) -> tuple[float, str]:
-        """Largest error in standard errors, and whose it is."""
-        name = max(self.errors, key=lambda one: abs(self.errors[one][1]), default="")
-        return (abs(self.errors[name][1]), name) if name else (np.nan, "")
-
-    @property
-    def is_right(self) -> bool:
-        """Whether the vehicle was accepted, no fault was reported, and no error is wide."""
-        return self.verdict == "accept" and not self.faults and self.widest[0] < WIDE
+    outcome: Outcome
 
 
 def try_rig(number: int, limit: float) -> Judged:
-    """Record and identify one campaign; whatever fails is an outcome, too."""
+    """Record and identify one campaign."""
     rig = draw_rig(number)
-    campaign, started = rig.record(), time.process_time()
-    try:
-        with limit_of(limit):
-            result = sprung.identify(campaign)
-    except TimeIsUpError as error:
-        return Judged(rig, "failed", str(error), seconds=time.process_time() - started)
-    except Exception as error:  # noqa: BLE001 (a crash is a row of the table)
-        return Judged(rig, "failed", f"{type(error).__name__}: {error}", seconds=time.process_time() - started)
-    return Judged(
-        rig,
-        result.verdict.state,
-        result.verdict.reasons[0] if result.verdict.reasons else "",
-        tuple(result.fit.model),
-        tuple(f"{one.code} ({one.where})" for one in result.faults),
-        _errors(result, rig),
-        time.process_time() - started,
-    )
-
-
-def _errors(result: sprung.Result, rig: Rig) -> dict[str, tuple[float, float, bool]]:
-    errors = {}
-    for name, true in rig.vehicle.parameters.items():
-        found = result.parameters.get(name)
-        if true and found is not None and found.value is not None and found.std and found.interval95 is not None:
-            low, high = found.interval95
-            holds = (low is None or low <= true) and (high is None or true <= high)
-            errors[name] = ((found.value - true) / true, (found.value - true) / found.std, holds)
-    return errors
+    truth = {name: value for name, value in rig.vehicle.parameters.items() if value}
+    outcome, _ = judge((rig.vehicle.model, number, rig.label), rig.record(), truth, limit)
+    return Judged(rig, outcome)
 
 
 def main() -> None:
@@ -115,29 +49,31 @@ def main() -> None:
 
 
 def _document(one: Judged) -> dict[str, Any]:
+    outcome = one.outcome
     return {
         "number": one.rig.number,
         "test": one.rig.label,
-        "verdict": one.verdict,
-        "reason": one.reason,
-        "model": list(one.model),
-        "faults": list(one.faults),
-        "errors_percent": {name: figures(100 * error[0]) for name, error in one.errors.items()},
-        "errors_in_standard_errors": {name: figures(error[1]) for name, error in one.errors.items()},
-        "covered": sum(error[2] for error in one.errors.values()),
-        "seconds": round(one.seconds, 1),
+        "verdict": outcome.verdict,
+        "reason": outcome.reason,
+        "model": list(outcome.model),
+        "faults": list(outcome.faults),
+        "errors_percent": {name: figures(100 * error[0]) for name, error in outcome.errors.items()},
+        "errors_in_standard_errors": {name: figures(error[1]) for name, error in outcome.errors.items()},
+        "covered": sum(error[2] for error in outcome.errors.values()),
+        "seconds": round(outcome.seconds, 1),
     }
 
 
 def _sentence(one: Judged) -> str:
-    found = [one.verdict]
-    wide, name = one.widest
+    outcome = one.outcome
+    found = [outcome.verdict]
+    wide, name = outcome.worst_scaled
     if name:
-        found.append(f"{wide:.3g} standard errors ({name}, {100 * one.errors[name][0]:.3g} %)")
-    found += [f"reported {fault}" for fault in one.faults]
-    if one.verdict != "accept":
-        found.append(one.reason)
-    return f"number {one.rig.number}, {one.rig.label}: {', '.join(found)}; {one.seconds:.0f} s"
+        found.append(f"{wide:.3g} standard errors ({name}, {100 * outcome.errors[name][0]:.3g} %)")
+    found += [f"reported {fault}" for fault in outcome.faults]
+    if outcome.verdict != "accept":
+        found.append(outcome.reason)
+    return f"number {one.rig.number}, {one.rig.label}: {', '.join(found)}; {outcome.seconds:.0f} s"
 
 
 def page(tested: Sequence[Judged]) -> str:
@@ -150,8 +86,8 @@ def page(tested: Sequence[Judged]) -> str:
         *((reading, lambda one, reading=reading: one.rig.readings == reading) for reading in READINGS),
         ("all", lambda _: True),
     ]
-    chosen = [(name, [one for one in tested if belongs(one)]) for name, belongs in groups]
-    others = "\n".join(f"- {_sentence(one)}" for one in tested if not one.is_right)
+    chosen = [(name, [one.outcome for one in tested if belongs(one)]) for name, belongs in groups]
+    others = "\n".join(f"- {_sentence(one)}" for one in tested if not one.outcome.is_right)
     return f"""# Parts of vehicles as they are
 
 Rigs for a corner or an axle have rubber mounts, friction and curved dampers as cars have, and they are measured with
@@ -190,7 +126,7 @@ Every campaign is in [parts-as-they-are.json](parts-as-they-are.json).
 """
 
 
-def _row(name: str, outcomes: Sequence[Judged]) -> list[str]:
+def _row(name: str, outcomes: Sequence[Outcome]) -> list[str]:
     errors = [error for one in outcomes for error in one.errors.values()]
     seconds = [one.seconds for one in outcomes]
     return [
@@ -198,7 +134,7 @@ def _row(name: str, outcomes: Sequence[Judged]) -> list[str]:
         str(len(outcomes)),
         " / ".join(str(sum(one.verdict == state for one in outcomes)) for state in STATES),
         str(sum(bool(one.faults) for one in outcomes)),
-        f"{max((one.widest[0] for one in outcomes if one.errors), default=np.nan):.3g}",
+        f"{max((one.worst_scaled[0] for one in outcomes if one.errors), default=np.nan):.3g}",
         f"{100 * np.mean([error[2] for error in errors]) if errors else np.nan:.3g}",
         f"{np.median(seconds):.3g}, {max(seconds):.3g}",
     ]

@@ -18,7 +18,7 @@ from pages import arguments, report_progress, run, table, write
 from real_campaigns import record
 from real_cars import LIMIT, STATES, campaign_document, document
 from real_kinds import FIVE, KINDS, WEIGHING, Draw, RealTest, draw_test
-from real_outcomes import Outcome, examine
+from real_outcomes import WIDE, Outcome, examine
 
 RATES = (250.0, 400.0, 500.0, 1000.0, 2000.0)
 """Samples per second."""
@@ -34,9 +34,6 @@ UNWEIGHED = 0.3
 
 SEEDS = 1000
 """The first car's seed: none that the study of real cars has."""
-
-WIDE = 4.0
-"""Standard errors beyond which an error is named on the page."""
 
 
 class Judged(NamedTuple):
@@ -56,12 +53,6 @@ class Judged(NamedTuple):
             f"{test.rate:g} Hz, {test.noise:.3f} m/s², {test.duration:g} s, {100 * test.height:.1f} cm, {drops} + {drops} "
             f"drops, {sum(one.mass for one in test.items) / test.car.m_s:.0%} ballast, {weighed}"
         )
-
-    @property
-    def is_right(self) -> bool:
-        """Whether the car was accepted, no fault was reported, and no error is wide."""
-        outcome = self.outcome
-        return outcome.verdict == "accept" and not outcome.faults and outcome.worst_scaled[0] < WIDE
 
 
 def draw_other_test(number: int) -> RealTest:
@@ -131,7 +122,7 @@ def page(tested: Sequence[Judged]) -> str:
     kinds = list(dict.fromkeys(one.outcome.kind for one in tested))
     rows = [_row(kind, [one.outcome for one in tested if one.outcome.kind == kind]) for kind in kinds]
     rows.append(_row("all", [one.outcome for one in tested]))
-    others = "\n".join(f"- number {one.number}, {_sentence(one)}" for one in tested if not one.is_right)
+    others = "\n".join(f"- number {one.number}, {_sentence(one)}" for one in tested if not one.outcome.is_right)
     return f"""# Cars as they are, tested in other ways
 
 In the [study of real cars](real-cars.md) all cars are tested alike. Nobody else tests like that: other loggers, noisier

@@ -1,10 +1,10 @@
-"""What came of the campaign of a real car, beside the truth."""
+"""What came of a campaign of which the truth is known: a real car's, or a rig's."""
 
 from __future__ import annotations
 
 import signal
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from types import FrameType
 from typing import Any, NamedTuple
@@ -19,6 +19,9 @@ import sprung
 SLOWEST = 0.05
 """m/s: the damper curve is judged from here on."""
 
+WIDE = 4.0
+"""Standard errors beyond which an error is named on a page."""
+
 
 class Outcome(NamedTuple):
     """What came of one campaign.
@@ -26,7 +29,7 @@ class Outcome(NamedTuple):
     Attributes
     ----------
     kind, seed, type
-        What it was drawn from, and the type of the car.
+        What it was drawn from, and the type of the vehicle.
     verdict, reason
         Of the result; ``failed`` and the exception where there is none.
     model
@@ -70,6 +73,11 @@ class Outcome(NamedTuple):
         name = max(self.errors, key=lambda one: abs(self.errors[one][1]), default="")
         return (abs(self.errors[name][1]), name) if name else (np.nan, "")
 
+    @property
+    def is_right(self) -> bool:
+        """Whether the vehicle was accepted, no fault was reported, and no error is wide."""
+        return self.verdict == "accept" and not self.faults and self.worst_scaled[0] < WIDE
+
 
 class TimeIsUpError(BaseException):
     """The limit of processor time is reached; no handler of ordinary errors stops it."""
@@ -103,30 +111,53 @@ def examine(campaign: sprung.Campaign, truth: Truth, limit: float, **options: An
     options
         Of `sprung.identify`.
     """
-    test, started = truth.test, time.process_time()
+    test = truth.test
+    outcome, result = judge((test.kind, test.seed, test.car.name), campaign, truth.parameters, limit, **options)
+    return outcome if result is None else outcome._replace(curve=_curve(result, truth))
+
+
+def judge(
+    drawn: tuple[str, int, str],
+    campaign: sprung.Campaign,
+    parameters: Mapping[str, float],
+    limit: float,
+    **options: Any,
+) -> tuple[Outcome, sprung.Result | None]:
+    """Identify a vehicle and hold the result against its parameters; return the result as well, None where it failed.
+
+    Parameters
+    ----------
+    drawn
+        Kind, seed and type.
+    campaign
+        As recorded.
+    parameters
+        True ones by their names in results, SI.
+    limit, options
+        As for `examine`.
+    """
+    started = time.process_time()
     try:
         with limit_of(limit):
             result = sprung.identify(campaign, **options)
     except TimeIsUpError as error:
-        verdict, reason = "failed", str(error)
+        reason = str(error)
     except Exception as error:  # noqa: BLE001 (a crash is a row of the table)
-        verdict, reason = "failed", f"{type(error).__name__}: {error}"
+        reason = f"{type(error).__name__}: {error}"
     else:
-        errors, missing = _errors(result, truth)
-        return Outcome(
-            test.kind,
-            test.seed,
-            test.car.name,
+        errors, missing = _errors(result, parameters)
+        outcome = Outcome(
+            *drawn,
             result.verdict.state,
             result.verdict.reasons[0] if result.verdict.reasons else "",
             tuple(result.fit.model),
             tuple(f"{one.code} ({one.where})" for one in result.faults),
             errors,
             missing,
-            _curve(result, truth),
-            time.process_time() - started,
+            seconds=time.process_time() - started,
         )
-    return Outcome(test.kind, test.seed, test.car.name, verdict, reason, seconds=time.process_time() - started)
+        return outcome, result
+    return Outcome(*drawn, "failed", reason, seconds=time.process_time() - started), None
 
 
 def examine_seeds(kind: str, seeds: Sequence[int], limit: float) -> list[Outcome]:
@@ -134,9 +165,11 @@ def examine_seeds(kind: str, seeds: Sequence[int], limit: float) -> list[Outcome
     return [examine(*one, limit) for one in record([draw_test(kind, seed) for seed in seeds])]
 
 
-def _errors(result: sprung.Result, truth: Truth) -> tuple[dict[str, tuple[float, float, bool]], tuple[str, ...]]:
+def _errors(
+    result: sprung.Result, parameters: Mapping[str, float]
+) -> tuple[dict[str, tuple[float, float, bool]], tuple[str, ...]]:
     errors, missing = {}, []
-    for name, true in truth.parameters.items():
+    for name, true in parameters.items():
         found = result.parameters.get(name)
         if found is None or found.value is None or not found.std or found.interval95 is None:
             missing.append(name)

@@ -8,6 +8,7 @@ import numpy as np
 import parts_as_they_are
 import pytest
 from parts_as_they_are import Judged, page
+from real_outcomes import Outcome
 from rigs import EFFECTS, MODELS, READINGS, draw_rig
 
 
@@ -34,9 +35,10 @@ def test_the_recordings_are_those_that_the_test_says() -> None:
 
 def test_the_page_names_what_was_not_right(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     rig, other = draw_rig(0), draw_rig(4)
-    right = Judged(rig, "accept", "", errors={"m_s": (0.01, 1.0, True)}, seconds=1.0)
-    wide = Judged(other, "accept", "", errors={"m_s": (0.01, 1.0, True), "k_t": (-0.05, -5.0, False)}, seconds=3.0)
-    written = page([right, wide])
+    right = Outcome("quarter", 0, rig.label, "accept", "", errors={"m_s": (0.01, 1.0, True)}, seconds=1.0)
+    errors = {"m_s": (0.01, 1.0, True), "k_t": (-0.05, -5.0, False)}
+    wide = Outcome("quarter", 4, other.label, "accept", "", errors=errors, seconds=3.0)
+    written = page([Judged(rig, right), Judged(other, wide)])
     assert "- number 4, quarter with friction and tyre curve" in written
     assert "5 standard errors (k_t, -5 %)" in written
     assert "- number 0" not in written

@@ -232,13 +232,17 @@ class ModelSearch:
 
         In one channel alone it is its sensor's: whatever a vehicle does, more than one shows it.
         """
-        model_error, _ = estimate_model_error(self.fit)
-        return float(np.sort(model_error)[-2:].min()) > UNEXPLAINED
+        return float(np.sort(self._model_error)[-2:].min()) > UNEXPLAINED
 
     @cached_property
     def is_doubtful(self) -> bool:
         """Whether the model does not explain what some channel records, so that its parameters would not be accepted."""
-        return self.is_overdispersed and float(estimate_model_error(self.fit)[0].max()) > EXPLAINED
+        return self.is_overdispersed and float(self._model_error.max()) > EXPLAINED
+
+    @cached_property
+    def _model_error(self) -> Real:
+        """Of each channel, as a part of its signal."""
+        return estimate_model_error(self.fit)[0]
 
     @property
     def is_overdispersed(self) -> bool:
@@ -413,8 +417,10 @@ class ModelSearch:
         What one sensor shows above all others, a wheel what its tyre does, may be what a further term explains.
         """
         before, after = self._much_left(fit)
-        in_mean = bool(before.size) and not float((after / before).mean()) <= MISFIT_LEFT_AT_FIRST
-        return in_mean and self.leaves_misfit(fit, MISFIT_LEFT_AT_FIRST)
+        if not before.size:
+            return False
+        parts = after.sum() / before.sum(), (after / before).mean()
+        return not any(part <= MISFIT_LEFT_AT_FIRST for part in parts)
 
     def _much_left(self, fit: FitResult) -> tuple[Real, Real]:
         """Return what this fit and another one leave, over the noise, in the channels in which this one leaves much."""

@@ -38,8 +38,6 @@ _ROUNDS = 2 * len(TERMS)
 _EXPLAINED = 0.7
 """Part of a small misfit's overdispersion that a term may leave: any term seems to explain some of an error of another kind."""
 
-_NOT_LIKE_NOISE = "what is left is no more like noise with it"
-
 _RIVALS, _RIVAL_SCORE = 2, 0.5
 """How many terms are fitted beside one that leaves a misfit, and their scores at the least, as a part of its score."""
 
@@ -249,8 +247,6 @@ def try_term(
     tried, against = _settled(search, tried, term)
     gain = tried.gain_over(search)
     enough = gain > search.required(term)
-    if against == _NOT_LIKE_NOISE and enough and larger.is_nonlinear:
-        tried, against = _with_one_more(search, tried)
     if against or not enough:
         return search.recorded({term: gain}, True, False, against)
     if larger.is_nonlinear:
@@ -281,7 +277,9 @@ def _settled(search: ModelSearch, tried: ModelSearch, term: str) -> tuple[ModelS
             tried = replace(tried, fit=replace(tried.fit, converged=True))
     if not tried.fit.converged:
         return tried, "the fit with it did not converge"
-    return tried, "" if _is_more_like_noise(search, tried) else _NOT_LIKE_NOISE
+    if not _is_more_like_noise(search, tried) and tried.structure.is_nonlinear:
+        tried = _with_one_more(search, tried)
+    return tried, "" if _is_more_like_noise(search, tried) else "what is left is no more like noise with it"
 
 
 def _is_more_like_noise(search: ModelSearch, tried: ModelSearch) -> bool:
@@ -289,7 +287,7 @@ def _is_more_like_noise(search: ModelSearch, tried: ModelSearch) -> bool:
     return not search.is_misfit_small or tried.overdispersion <= _EXPLAINED * search.overdispersion
 
 
-def _with_one_more(search: ModelSearch, tried: ModelSearch) -> tuple[ModelSearch, str]:
+def _with_one_more(search: ModelSearch, tried: ModelSearch) -> ModelSearch:
     """Return a nonlinear model with the likeliest term beside the one that was tried, if both together leave noise.
 
     Of two properties that are both missing, neither alone leaves what is more like noise.
@@ -298,8 +296,8 @@ def _with_one_more(search: ModelSearch, tried: ModelSearch) -> tuple[ModelSearch
         larger = tried.with_terms([other])
         both = fit_nonlinear_term(tried, larger, begin_nonlinear_fit(tried, larger))
         if both is not None and both.fit.converged and _is_more_like_noise(search, both):
-            return both, ""
-    return tried, _NOT_LIKE_NOISE
+            return both
+    return tried
 
 
 def _completed(

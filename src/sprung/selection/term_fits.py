@@ -214,7 +214,7 @@ def fit_nonlinear_term(search: ModelSearch, larger: ModelStructure, first: FitRe
 
     Where it does, the linear fit may have gone too far astray to begin from: the wheels then keep their masses at first.
     """
-    if search.leaves_most(first) and search.is_misfit_large and not search.structure.is_nonlinear:
+    if search.is_misfit_large and not search.structure.is_nonlinear and search.leaves_most(first):
         held = begin_nonlinear_fit(_begin_with_held_wheels(search, larger), larger)
         first = max(first, held, key=lambda fit: fit.loglikelihood)
     if search.leaves_most(first):
