@@ -32,6 +32,10 @@ MISFIT_LEFT_BESIDE = 0.3
 MISFIT_LEFT_BY_ALL = 0.05
 """The same of a linear term that resembles many a fault: it may leave geometry of second order, say, that is tried later."""
 
+HARDLY_EXPLAINED = 0.5
+"""Model error, as a part of a channel's signal, from which no further term is all that is missing there: the channel shows what
+the vehicle does not do."""
+
 LEAST_SHARE = 0.05
 """Part of what is left to explain that a term has to explain: less than that is feigned by whatever else is wrong."""
 

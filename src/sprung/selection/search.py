@@ -14,6 +14,7 @@ from sprung.estimation import NEAR, FitResult, per_total_mass, unexplained_squar
 from sprung.preprocess import FreeDecay
 from sprung.progress import Progress, silent
 from sprung.selection.error_budget import (
+    HARDLY_EXPLAINED,
     LEAST_SHARE,
     MISFIT_LEFT_AT_FIRST,
     MODEL_ERROR,
@@ -414,13 +415,14 @@ class ModelSearch:
     def leaves_most(self, fit: FitResult) -> bool:
         """Whether another fit, on its way, leaves most of this one's model error: of all channels together, and in their mean.
 
-        What one sensor shows above all others, a wheel what its tyre does, may be what a further term explains.
+        What one sensor shows above all others, a wheel what its tyre does, may be what a further term explains, unless it is
+        most of what that sensor shows.
         """
         before, after = self._much_left(fit)
-        if not before.size:
+        if not before.size or after.sum() <= MISFIT_LEFT_AT_FIRST * before.sum():
             return False
-        parts = after.sum() / before.sum(), (after / before).mean()
-        return not any(part <= MISFIT_LEFT_AT_FIRST for part in parts)
+        in_mean = (after / before).mean() <= MISFIT_LEFT_AT_FIRST
+        return not (in_mean and estimate_model_error(fit)[0].max() < HARDLY_EXPLAINED)
 
     def _much_left(self, fit: FitResult) -> tuple[Real, Real]:
         """Return what this fit and another one leave, over the noise, in the channels in which this one leaves much."""
