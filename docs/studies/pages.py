@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import subprocess
 import sys
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -16,6 +17,7 @@ from typing import Any, TypeVar
 import numpy as np
 from campaigns import Case, Real, Trial
 
+import sprung
 from sprung.vehicle import PARAMETERS
 
 Outcome = TypeVar("Outcome")
@@ -184,6 +186,16 @@ def arguments(description: str, campaigns: int) -> argparse.ArgumentParser:
         "--to", type=Path, default=here, help="folder of page and numbers (default: beside this script)"
     )
     return parser
+
+
+def program() -> str:
+    """Return the commit of the program that is run, `-dirty` where files differ from it; its version without a history."""
+    command = ["git", "-C", str(Path(__file__).parent), "describe", "--always", "--exclude=*", "--abbrev=8", "--dirty"]
+    try:
+        described = subprocess.run(command, capture_output=True, text=True, check=True)  # noqa: S603 (our own text)
+    except (OSError, subprocess.CalledProcessError):
+        return sprung.__version__
+    return described.stdout.strip()
 
 
 def write(folder: Path, name: str, page: str, numbers: Mapping[str, Sequence[Mapping[str, Any]]]) -> None:

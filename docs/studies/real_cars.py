@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from pages import VERDICTS, arguments, figures, report_progress, run, table, write
+from pages import VERDICTS, arguments, figures, program, report_progress, run, table, write
 from real_kinds import KINDS, NO_VEHICLE, NOISE, RATE, WEIGHING
 from real_outcomes import SLOWEST, Outcome, examine_seeds
 
@@ -84,6 +84,7 @@ def document(outcomes: Sequence[Outcome]) -> dict[str, Any]:
     return {
         "kind": outcomes[0].kind,
         "campaigns": len(outcomes),
+        "program": program(),
         "verdicts": {state: sum(one.verdict == state for one in outcomes) for state in STATES},
         "with_false_faults": sum(bool(one.faults) for one in outcomes),
         "median_worst_percent": figures(100 * _over(np.nanmedian, [one.worst[0] for one in stated])),
@@ -190,12 +191,15 @@ the true value. Errors do not include rejected campaigns, of which no parameters
 
 Of {tested} sound campaigns {accused} have a fault reported.
 {picture}
+Rows by the commit of the program that made them: {_made_by(numbers["kinds"])}.
+
 What no vehicle is, to be rejected: a wheel that strikes a stop after some play, a loose sensor that slaps, and recordings
 of two vehicles mixed.
 
 {table([*head_refused, "longest time, s"], refused)}
 
 A sensor that slaps only while a wheel is in the air spoils no decay: such campaigns are accepted, and its spikes are named.
+Of two vehicles the drops of each are named.
 
 Every parameter and every campaign is in [real-cars.json](real-cars.json).
 
@@ -204,6 +208,15 @@ Every parameter and every campaign is in [real-cars.json](real-cars.json).
     python docs/studies/real_cars.py --kinds plain --campaigns 200 --processes 2
     python docs/studies/real_cars.py --kinds KIND ... --campaigns 60 --processes 2 --add
 """
+
+
+def _made_by(kinds: Sequence[dict[str, Any]]) -> str:
+    """Return by which commits the rows were made, the one that made most of them first."""
+    made = Counter(one["program"] for one in kinds)
+    return "; ".join(
+        f"{commit}: {', '.join(one['kind'] for one in kinds if one['program'] == commit)}"
+        for commit, _ in made.most_common()
+    )
 
 
 def _row(one: dict[str, Any]) -> list[str]:
