@@ -17,8 +17,9 @@ from zlib import crc32
 import numpy as np
 from fleet import VehicleTest
 from outcomes import INJURIES, read_back
-from pages import VERDICTS, arguments, figures, report_progress, run, table, write
+from pages import arguments, figures, report_progress, run, table, write
 from real_campaigns import record
+from real_cars import STATES
 from real_kinds import draw_test
 from real_outcomes import Outcome, examine
 
@@ -113,7 +114,7 @@ def document(one: Found) -> dict[str, Any]:
 def row(name: str, every: Sequence[Found]) -> list[str]:
     """Return a row of the table."""
     outcomes = [one.outcome for one in every]
-    counts = [sum(one.verdict == verdict for one in outcomes) for verdict in (*VERDICTS, "failed")]
+    counts = [sum(one.verdict == verdict for one in outcomes) for verdict in STATES]
     accepted = [one for one in outcomes if one.verdict == "accept" and one.errors]
     worst = max((100 * one.worst[0] for one in accepted), default=np.nan)
     scaled = max((one.worst_scaled[0] for one in accepted), default=np.nan)

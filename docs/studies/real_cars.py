@@ -37,6 +37,7 @@ def main() -> None:
     parser.add_argument("--add", action="store_true", help="keep the kinds in real-cars.json that are not run")
     parser.add_argument("--limit", type=float, default=LIMIT, help="s of processor time for each (default %(default)g)")
     options = parser.parse_args()
+    made_by = {"program": program()}
     seeds = [range(i, min(i + TOGETHER, options.campaigns)) for i in range(0, options.campaigns, TOGETHER)]
     tasks = [(kind, some, options.limit) for kind in options.kinds for some in seeds]
     outcomes: list[Outcome] = []
@@ -45,7 +46,7 @@ def main() -> None:
         last = some[-1]
         report_progress(f"{last.kind} to {last.seed}: {', '.join(one.verdict for one in some)}")
     numbers = {
-        "kinds": [document(_of(kind, outcomes)) for kind in options.kinds],
+        "kinds": [document(_of(kind, outcomes)) | made_by for kind in options.kinds],
         "campaigns": [campaign_document(one) for one in outcomes],
     }
     if options.add:
@@ -84,7 +85,6 @@ def document(outcomes: Sequence[Outcome]) -> dict[str, Any]:
     return {
         "kind": outcomes[0].kind,
         "campaigns": len(outcomes),
-        "program": program(),
         "verdicts": {state: sum(one.verdict == state for one in outcomes) for state in STATES},
         "with_false_faults": sum(bool(one.faults) for one in outcomes),
         "median_worst_percent": figures(100 * _over(np.nanmedian, [one.worst[0] for one in stated])),
