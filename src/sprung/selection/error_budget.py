@@ -32,6 +32,10 @@ MISFIT_LEFT_BESIDE = 0.3
 MISFIT_LEFT_BY_ALL = 0.05
 """The same of a linear term that resembles many a fault: it may leave geometry of second order, say, that is tried later."""
 
+MISFIT_LEFT_TO_OTHERS = 0.5
+"""The same of such a term before further ones are looked for beside it: one that leaves most of a misfit is not what makes it.
+That one shows when it is tried itself, and this one beside it again."""
+
 HARDLY_EXPLAINED = 0.5
 """Model error, as a part of a channel's signal, from which no further term is all that is missing there: the channel shows what
 the vehicle does not do."""

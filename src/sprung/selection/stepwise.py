@@ -14,7 +14,7 @@ from math import inf, isfinite
 from sprung.estimation import FitResult
 from sprung.selection.backward_elimination import counterpart_of, leave_out_unneeded
 from sprung.selection.contact import from_contact
-from sprung.selection.error_budget import MISFIT_LEFT, MISFIT_LEFT_BY_ALL
+from sprung.selection.error_budget import MISFIT_LEFT, MISFIT_LEFT_BY_ALL, MISFIT_LEFT_TO_OTHERS
 from sprung.selection.evident_faults import with_evident_fault
 from sprung.selection.ordinary_vehicle import may_be_astray, or_from_ordinary_vehicle
 from sprung.selection.scoring import WORTH_A_FIT, Scores, most_promising, score_terms
@@ -311,6 +311,8 @@ def _completed(
     leaves_much = not against and search.leaves_misfit(tried.fit, MISFIT_LEFT_BY_ALL)
     if not (is_incomplete or leaves_much):
         return tried, against
+    if search.leaves_misfit(tried.fit, MISFIT_LEFT_TO_OTHERS):
+        return tried, "it explains less than half of the misfit"
     # Beside it a second one of its kind is looked for, a bending body beside people on seats, say; beside both, none.
     is_second = len(among) < len(_LINEAR)
     others = [other for other in among if other != term and not (is_second and TERMS[other].explains_all)]
