@@ -48,6 +48,7 @@ def main() -> None:
     numbers = {
         "kinds": [document(_of(kind, outcomes)) | made_by for kind in options.kinds],
         "campaigns": [campaign_document(one) for one in outcomes],
+        "notes": [],
     }
     if options.add:
         numbers = merged(json.loads((options.to / "real-cars.json").read_text()), numbers)
@@ -56,7 +57,10 @@ def main() -> None:
 
 
 Numbers = Mapping[str, list[dict[str, Any]]]
-"""What the JSON file holds: the figures of each kind, and each campaign."""
+"""What the JSON file holds: the figures of each kind, each campaign, and what was found out about single ones of a kind.
+
+The last is written by hand, and goes when the kind is run again.
+"""
 
 
 def merged(before: Numbers, added: Numbers) -> dict[str, list[dict[str, Any]]]:
@@ -192,7 +196,8 @@ the true value. Errors do not include rejected campaigns, of which no parameters
 Of {tested} sound campaigns {accused} have a fault reported.
 {picture}
 Rows by the commit of the program that made them: {_made_by(numbers["kinds"])}.
-
+Times depend on the machine, with a program on each of its cores: compare them with those of plain cars by the same program.
+{_notes(numbers["notes"])}
 What no vehicle is, to be rejected: a wheel that strikes a stop after some play, a loose sensor that slaps, and recordings
 of two vehicles mixed.
 
@@ -217,6 +222,10 @@ def _made_by(kinds: Sequence[dict[str, Any]]) -> str:
         f"{commit}: {', '.join(one['kind'] for one in kinds if one['program'] == commit)}"
         for commit, _ in made.most_common()
     )
+
+
+def _notes(notes: Sequence[dict[str, Any]]) -> str:
+    return "".join(f"\n*{one['kind'].capitalize()}.* {one['text']}\n" for one in notes)
 
 
 def _row(one: dict[str, Any]) -> list[str]:
