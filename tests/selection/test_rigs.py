@@ -34,6 +34,8 @@ LIMIT = 1200.0
         pytest.param(129, ("friction", "rebound", "progressive"), marks=pytest.mark.long, id="spring beside all"),
         # Of damping and stiffening of the tyre neither alone leaves what is more like noise.
         pytest.param(183, ("tyre-damping", "progressive", "tyre-curve"), marks=pytest.mark.slow, id="two of a tyre"),
+        # A Zener branch that turned out to be nothing had taken the place of a mount.
+        pytest.param(187, ("damper-mount", "progressive"), marks=pytest.mark.long, id="mount in place of Zener"),
     ],
 )
 def test_each_property_is_found_and_no_other(number: int, terms: tuple[str, ...]) -> None:

@@ -29,6 +29,7 @@ from sprung.selection import (
     or_from_ordinary_vehicle,
     or_with_usual_linear_terms,
     select_flexible_body,
+    select_further_terms,
     try_term,
     with_short_steps,
 )
@@ -159,19 +160,28 @@ def select_nonlinear_terms(run: Analysis, progress: Progress) -> Analysis:
                 return replace(run, isolated=(run.fit, tuple(wrong)))
             return restart_corrected(run, wrong, "select_nonlinear_terms")
     if search.structure.names != before.structure.names:
-        # A term that explained what another one makes may have led the fit away, to wheels that are nowhere.
-        search = search if is_ordinary(search) else or_from_ordinary_vehicle(search)
-        # The search compares fits to beginnings, or to a standard error: at the optimum a term may turn out to be nothing.
-        last = from_contact(search)
-        needed, _ = leave_out_unneeded(last, run.model)
-        # Where a wheel last touched, a model with more than the vehicle has did not know.
-        search = last if needed is last else from_contact(search.refit_as(needed))
-        search = with_short_steps(search)
+        search = _at_the_optimum(run, search)
     run = _with_search(run, run.model, search, "select_nonlinear_terms")
     if search.structure.low_pass is None:
         return run
     remark = f"recorded behind a low-pass of the loggers at {corner_of(search):.0f} Hz, as the recordings show"
     return replace(run, remarks=(*run.remarks, remark)).noted("select_nonlinear_terms", remark)
+
+
+def _at_the_optimum(run: Analysis, search: ModelSearch) -> ModelSearch:
+    """Fit a nonlinear model that was found to the end, and leave out the terms that turn out to be nothing there."""
+    # A term that explained what another one makes may have led the fit away, to wheels that are nowhere.
+    search = search if is_ordinary(search) else or_from_ordinary_vehicle(search)
+    # The search compares fits to beginnings, or to a standard error.
+    last = from_contact(search)
+    needed, _ = leave_out_unneeded(last, run.model)
+    if needed is not last:
+        # Where a wheel last touched, a model with more than the vehicle has did not know.
+        last = from_contact(search.refit_as(needed))
+        if last.is_overdispersed:
+            # What was refused beside a term that is gone may be what that one was taken for.
+            last = from_contact(select_further_terms(last, whole=True))
+    return with_short_steps(last)
 
 
 def has_flexible_body(run: Analysis) -> bool:

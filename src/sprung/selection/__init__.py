@@ -16,6 +16,7 @@ from sprung.selection.from_ordinary_vehicle import (
     or_with_usual_linear_terms,
     select_flexible_body,
 )
+from sprung.selection.further_terms import select_further_terms
 from sprung.selection.linear_terms import ENGINE, FLEXIBLE_BODIES, SEPARATE_TRACKS, STARTED_LATER
 from sprung.selection.low_pass import confirm_low_pass, corner_of, select_low_pass
 from sprung.selection.model_term import ModelTerm
@@ -95,6 +96,7 @@ __all__ = [
     "score_terms",
     "select_finite_rotation",
     "select_flexible_body",
+    "select_further_terms",
     "select_gravity_leakage",
     "select_linear_terms",
     "select_low_pass",
