@@ -63,6 +63,8 @@ class Analysis:
         All of them, in order.
     remaining
         Those that are still to come.
+    preprocessed
+        The campaign before anything was isolated, what its first motion contradicts corrected; None until then.
     excluded
         Why drops are left out, by the names of their recordings.
     corrected
@@ -99,6 +101,7 @@ class Analysis:
     options: AnalysisOptions
     stages: tuple[Stage, ...]
     remaining: tuple[Stage, ...]
+    preprocessed: Campaign | None = None
     excluded: Mapping[str, Fault] = field(default_factory=dict)
     corrected: tuple[Hypothesis, ...] = ()
     suspected: tuple[Fault, ...] = ()
@@ -176,6 +179,13 @@ class Analysis:
         if self.preparation is None:
             raise RuntimeError("the campaign is preprocessed in the first stage")
         return self.preparation
+
+    @property
+    def stated(self) -> Campaign:
+        """The campaign before anything was isolated; it is there from the first stage on."""
+        if self.preprocessed is None:
+            raise RuntimeError("the campaign is preprocessed in the first stage")
+        return self.preprocessed
 
     @property
     def model(self) -> ModelSearch:

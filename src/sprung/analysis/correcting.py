@@ -10,6 +10,15 @@ from sprung.campaign import Campaign
 from sprung.faults import Hypothesis
 
 
+def corrected_campaign(campaign: Campaign, hypotheses: Sequence[Hypothesis]) -> Campaign:
+    """Return a campaign with what is wrong corrected, and named; a drop that is left out stays in it, with its reason."""
+    for one in hypotheses:
+        if one.recording is None:
+            campaign = one.correction.of_campaign(campaign)
+            campaign = replace(campaign, faults=(*campaign.faults, one.fault))
+    return campaign
+
+
 def restart_corrected(run: Analysis, hypotheses: Sequence[Hypothesis], stage: str) -> Analysis:
     """Restart with what is wrong corrected or left out, and named.
 
@@ -27,10 +36,6 @@ def restart_corrected(run: Analysis, hypotheses: Sequence[Hypothesis], stage: st
     Analysis
         At its first stage.
     """
-    campaign: Campaign = run.campaign
-    for hypothesis in hypotheses:
-        if hypothesis.recording is None:  # a drop that is left out stays in the campaign, with its reason
-            campaign = hypothesis.correction.of_campaign(campaign)
-            campaign = replace(campaign, faults=(*campaign.faults, hypothesis.fault))
+    campaign = corrected_campaign(run.campaign, hypotheses)
     why = "; ".join(f"{one.fault.where}: {one.fault.what}" for one in hypotheses)
     return run.restart(campaign, hypotheses, stage, why)

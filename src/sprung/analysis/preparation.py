@@ -21,6 +21,7 @@ def preprocess(run: Analysis, progress: Progress) -> Analysis:
         run = replace(
             run,
             campaign=campaign,
+            preprocessed=campaign,
             excluded=undeclared,
             suspected=tuple(dict.fromkeys(undeclared.values())),
             preparation=prepared,

@@ -10,6 +10,7 @@ from sprung.analysis.clocks import synchronise
 from sprung.analysis.faults import isolate_evident_faults, isolate_faults
 from sprung.analysis.flight import use_flight
 from sprung.analysis.preparation import preprocess
+from sprung.analysis.taking_back import take_back_corrections
 from sprung.analysis.terms import (
     select_finite_rotation,
     select_first_term,
@@ -31,6 +32,7 @@ STAGES: tuple[Stage, ...] = (
     select_finite_rotation,
     isolate_evident_faults,
     select_nonlinear_terms,
+    take_back_corrections,
     isolate_faults,
     use_all_samples,
     estimate_uncertainty,
