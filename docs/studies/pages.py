@@ -198,10 +198,17 @@ def program() -> str:
     return described.stdout.strip()
 
 
-def write(folder: Path, name: str, page: str, numbers: Mapping[str, Sequence[Mapping[str, Any]]]) -> None:
-    """Write a study's page and its numbers, one line for each case."""
+PROGRAM = program()
+"""As it was when the study began: files may change while it runs."""
+
+
+def write(
+    folder: Path, name: str, page: str, numbers: Mapping[str, Sequence[Mapping[str, Any]]], made_by: str = PROGRAM
+) -> None:
+    """Write a study's page, its last line the program that made it all, and its numbers, one line for each case."""
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / f"{name}.md").write_text(page, encoding="utf-8")
+    made = f"\nMade by the program of commit {made_by}.\n" if made_by else ""
+    (folder / f"{name}.md").write_text(page + made, encoding="utf-8")
     lists = []
     for key, cases in numbers.items():
         lines = ",\n".join("  " + json.dumps(case, ensure_ascii=False, allow_nan=False) for case in cases)

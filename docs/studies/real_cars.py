@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from pages import VERDICTS, arguments, figures, program, report_progress, run, table, write
+from pages import PROGRAM, VERDICTS, arguments, figures, report_progress, run, table, write
 from real_kinds import KINDS, NO_VEHICLE, NOISE, RATE, WEIGHING
 from real_outcomes import SLOWEST, Outcome, examine_seeds
 
@@ -37,7 +37,6 @@ def main() -> None:
     parser.add_argument("--add", action="store_true", help="keep the kinds in real-cars.json that are not run")
     parser.add_argument("--limit", type=float, default=LIMIT, help="s of processor time for each (default %(default)g)")
     options = parser.parse_args()
-    made_by = {"program": program()}
     seeds = [range(i, min(i + TOGETHER, options.campaigns)) for i in range(0, options.campaigns, TOGETHER)]
     tasks = [(kind, some, options.limit) for kind in options.kinds for some in seeds]
     outcomes: list[Outcome] = []
@@ -46,14 +45,14 @@ def main() -> None:
         last = some[-1]
         report_progress(f"{last.kind} to {last.seed}: {', '.join(one.verdict for one in some)}")
     numbers = {
-        "kinds": [document(_of(kind, outcomes)) | made_by for kind in options.kinds],
+        "kinds": [document(_of(kind, outcomes)) | {"program": PROGRAM} for kind in options.kinds],
         "campaigns": [campaign_document(one) for one in outcomes],
         "notes": [],
     }
     if options.add:
         numbers = merged(json.loads((options.to / "real-cars.json").read_text()), numbers)
     drawn = draw(numbers, options.to / "real-cars.svg")
-    write(options.to, "real-cars", page(numbers, drawn), numbers)
+    write(options.to, "real-cars", page(numbers, drawn), numbers, made_by="")
 
 
 Numbers = Mapping[str, list[dict[str, Any]]]
