@@ -18,7 +18,12 @@ from sprung.selection.from_ordinary_vehicle import (
     select_beside_usual_terms,
     select_from_ordinary_vehicle,
 )
-from sprung.selection.further_terms import select_further_terms, select_terms_beside, select_terms_in_whole
+from sprung.selection.further_terms import (
+    laws_of_part,
+    select_further_terms,
+    select_terms_beside,
+    select_terms_in_whole,
+)
 from sprung.selection.linear_terms import FLEXIBLE_BODIES
 from sprung.selection.nonlinear_terms import DAMPER_LAW
 from sprung.selection.ordinary_vehicle import fit_usual_terms, is_ordinary, likeliest_or_ordinary
@@ -70,7 +75,7 @@ def select_nonlinear_terms(search: ModelSearch, plain: ModelStructure) -> ModelS
         best = found if is_result and is_likelier(found, best) else best
         if best is not search and not (best.lacks_something or best.is_doubtful):
             break
-    for structure in _smaller_structures(best, plain) if best is not search else ():
+    for structure in _other_structures(best, plain) if best is not search else ():
         if not best.is_overdispersed or best.is_misfit_large:
             break
         found = select_beside_usual_terms(replace(search, steps=steps), structure)
@@ -135,23 +140,30 @@ def _searches(
         yield partial(_from_likeliest_beginning, bases, terms)
 
 
-def _smaller_structures(search: ModelSearch, plain: ModelStructure) -> list[ModelStructure]:
-    """Return what a nonlinear model may have too much of: all but friction, and each kind of rubber that moves as another.
+def _other_structures(search: ModelSearch, plain: ModelStructure) -> list[ModelStructure]:
+    """Return what else a nonlinear model may be: with other laws of its parts, and with less.
 
-    Several terms may have taken the place of one that resembles them, but for a little. Beside each other two kinds of rubber
-    lead to second optima: one of them may be one too many.
+    Of two laws of a spring the wrong one may explain more as long as a further term is missing, which does not show beside it.
+    Several terms may have taken the place of one that resembles them, but for a little: friction alone. Beside each other two
+    kinds of rubber lead to second optima: one of them may be one too many.
     """
-    alone = [term for term in search.structure.terms if TERMS[term].resembles_others and term not in plain.terms]
+    terms, opened = search.structure.terms, search.open_terms(tuple(TERMS))
+    laws = [
+        search.without(term).with_terms((*(one for one in terms if one != term), law))
+        for term in search.selected
+        for law in laws_of_part(term, opened)[1:]
+    ]
+    alone = [term for term in terms if TERMS[term].resembles_others and term not in plain.terms]
     more = {*search.selected} - {*alone}
     rubber = {term: TERMS[term].counterpart for term in search.selected if TERMS[term].is_linear}
     alike = {one for term, other in rubber.items() if other in rubber for one in (term, other)}
-    smaller = [search.without(term) for term in search.selected if term in alike]
-    without = [
+    others = [*laws, *(search.without(term) for term in search.selected if term in alike)]
+    from_plain = [
         plain.with_terms((*plain.terms, *(term for term in one.terms if term not in plain.terms)))
-        for one in smaller
+        for one in others
         if one.is_nonlinear
     ]
-    return [plain.with_terms((*plain.terms, *alone)), *without] if alone and more else without
+    return [plain.with_terms((*plain.terms, *alone)), *from_plain] if alone and more else from_plain
 
 
 def _with_usual_terms(base: ModelSearch, plain: ModelStructure, so_far: ModelSearch) -> ModelSearch:
