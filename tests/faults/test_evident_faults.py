@@ -10,9 +10,11 @@ import pytest
 from real_campaigns import record
 from real_kinds import draw_test
 from real_outcomes import examine
+from scipy.signal import lfilter
 
 import sprung
 from sprung.campaign import Campaign
+from sprung.errors import Fault
 from sprung.estimation import fit_linear
 from sprung.faults import CandidateFit, correct_beside_terms
 from sprung.preprocess import prepare
@@ -108,6 +110,36 @@ def test_a_sensor_that_sits_elsewhere_is_found_and_corrected() -> None:
     }
     true = {one.channel: one.position for one in sound().sensors if one.channel == "body_rl"}
     np.testing.assert_allclose(places["body_rl"] or (), true["body_rl"] or (), atol=0.05)
+
+
+def filtered(campaign: Campaign, channel: str, corner: float) -> Campaign:
+    """Pass a channel through a first-order low-pass, corner in Hz."""
+    number = [sensor.channel for sensor in campaign.sensors].index(channel)
+    share = 1 - np.exp(-2 * np.pi * corner / RATE)
+    recordings = []
+    for one in campaign.recordings:
+        values = one.values.copy()
+        values[number] = lfilter([share], [1, share - 1], values[number] - values[number, 0]) + values[number, 0]
+        recordings.append(replace(one, values=values))
+    return campaign.with_recordings(recordings)
+
+
+@pytest.mark.slow
+def test_a_channel_that_is_corrected_and_still_stands_out_is_left_out() -> None:
+    """A low-pass is not only late; and a channel that was corrected and is like the others stays."""
+    channel, late = "wheel_rr", Fault("late", "wheel_rr", "the channel is 4 ms late", "Check the logger.")
+    search, error = found(replace(filtered(sound(), channel, 40.0), faults=(late,)))
+    assert error == SensorError(channel, {})
+    (wrong,) = correct_beside_terms(
+        CandidateFit.of(search.structure, search.decays, search.fit), SensorError(channel, {})
+    )
+    assert (wrong.fault.code, wrong.fault.where, wrong.remedy) == ("unlike-others", channel, "left out")
+    assert wrong.recording is None
+    number = [sensor.channel for sensor in sound().sensors].index(channel)
+    for one in wrong.correction.of_campaign(sound()).recordings:
+        assert np.flatnonzero(np.isnan(one.values).any(axis=1)).tolist() == [number]
+    assert found(replace(sound(), faults=(late,)))[1] is None
+    assert found(replace(sound(), faults=(late,)), ("progressive",))[1] is None
 
 
 @pytest.mark.slow

@@ -37,10 +37,11 @@ def take_back_corrections(run: Analysis, progress: Progress) -> Analysis:
 
 
 def _fewer(corrected: Sequence[Hypothesis]) -> Iterator[tuple[Hypothesis, ...]]:
-    """Yield fewer corrections: none, as one may have made up for another; then all but each."""
+    """Yield fewer corrections: none, as one may have made up for another; then all but those of each place."""
     yield ()
-    if len(corrected) > 1:
-        yield from (tuple(other for other in corrected if other is not one) for one in corrected)
+    places = {one.fault.where: None for one in corrected}
+    if len(places) > 1:
+        yield from (tuple(one for one in corrected if one.fault.where != place) for place in places)
 
 
 def _with_corrections(run: Analysis, kept: Sequence[Hypothesis], progress: Progress) -> Analysis:

@@ -19,6 +19,7 @@ from sprung.faults.correction import (
     advance_channel,
     describe_sensor,
     exclude_drops,
+    mask_channel,
     relabel_loads,
     scale_channel,
 )
@@ -77,6 +78,14 @@ def _of_sensor(base: CandidateFit, error: SensorError) -> Hypothesis:
     """Return the hypothesis that a sensor is in error."""
     sensors = base.campaign.sensors
     channel = [sensor.channel for sensor in sensors].index(error.channel)
+    if not error.found:
+        what = "corrected as it is, the channel still contradicts all other channels; it is left out"
+        fault = Fault(
+            "unlike-others", error.channel, what, "Check the sensor, its cable, its logger's filter and its place."
+        )
+        return Hypothesis(
+            fault, "left out", mask_channel(channel), base.table, base, is_fitted=True, is_sufficient=True
+        )
     std = max(max(uncertainty, _LEFT * abs(size)) for size, uncertainty in error.found.values())
     rates = {recording.rate for recording in base.campaign.recordings}
     fault, correction, changes = _corrected(sensors[channel], channel, error, rates)

@@ -61,7 +61,7 @@ class SensorError(NamedTuple):
         Its channel.
     found
         Gain (the part by which it reads too much), or place (m further forward and left than stated), or delay (s), with
-        standard uncertainties, by the unknown.
+        standard uncertainties, by the unknown. Empty where none of them is all that is wrong.
     """
 
     channel: str
@@ -144,6 +144,8 @@ def find_sensor_error(search: ModelSearch) -> SensorError | None:
     SensorError or None
         None where no sensor stands out, and where its error would explain too little.
     """
+    if (spoilt := _still_at_fault(search)) is not None:
+        return SensorError(spoilt, {})
     scores = _scores(search)
     ranked = sorted(scores, key=lambda unknown: -scores[unknown])
     if not ranked:
@@ -171,6 +173,17 @@ def find_sensor_error(search: ModelSearch) -> SensorError | None:
         if (name := sensor_unknown(one, channel)) in lifted
     }
     return SensorError(channel, found) if quantity in found else None
+
+
+def _still_at_fault(search: ModelSearch) -> str | None:
+    """Return the channel that was corrected before and still leaves far more than any other one; None without any."""
+    variance, _, _ = search.fit.residual_moments
+    noise = search.sensor_noise
+    left = np.where(noise > 0, variance / np.where(noise > 0, noise, np.inf) - 1, 0.0)
+    worst = int(np.argmax(left))
+    channel = search.structure.sensors[worst].channel
+    stands_out = left[worst] > _OUTSTANDING**2 * np.delete(left, worst).max(initial=0.0)
+    return channel if stands_out and channel in _at_fault(search) else None
 
 
 def _scores(search: ModelSearch) -> dict[tuple[str, SensorQuantity], float]:
