@@ -10,12 +10,13 @@ import numpy as np
 import pytest
 
 import sprung
-from sprung.analysis import STAGES, Analysis, AnalysisOptions
+from sprung.analysis import Analysis, AnalysisOptions
+from sprung.analysis.baseline import fit_baseline
+from sprung.analysis.preparation import preprocess
 from sprung.analysis.taking_back import take_back_corrections
 from sprung.errors import Fault
-from sprung.estimation import fit_linear
 from sprung.faults import CandidateFit, Hypothesis
-from sprung.faults.correction import Correction
+from sprung.faults.correction import Correction, scale_channel
 from sprung.preprocess import exclude_drops
 from sprung.progress import silent
 from sprung.uncertainty import KnownValue
@@ -41,19 +42,15 @@ def recorded(*, is_sound: bool) -> sprung.Campaign:
 
 def analysed(campaign: sprung.Campaign, excluded: Sequence[str] = (), terms: tuple[str, ...] = ("zener",)) -> Analysis:
     """Analyse a campaign up to its linear model, with drops left out."""
-    names = [stage.__name__ for stage in STAGES]
-    begun = Analysis.start(campaign, AnalysisOptions("shared", terms), STAGES[: names.index("fit_baseline") + 1])
     why = {name: Fault("unlike-repeats", name, "contradicts the others", "Record it again.") for name in excluded}
-    first = STAGES[0](begun, silent)
+    first = preprocess(Analysis.start(campaign, AnalysisOptions("shared", terms), ()), silent)
     left = exclude_drops(first.campaign, first.prepared, why)
-    return STAGES[2](STAGES[1](replace(first, excluded=why, preparation=left), silent), silent)
+    return fit_baseline(replace(first, excluded=why, preparation=left), silent)
 
 
 def left_out(run: Analysis, name: str, terms: tuple[str, ...]) -> Analysis:
     """Say that a drop was left out beside a model with some terms."""
-    plain = run.model.structure.with_terms(terms)
-    fit = fit_linear(run.decays, plain.linear_models, plain.sensors, plain.known, start=run.fit.parameters, most=1)
-    candidate = CandidateFit.of(plain, run.decays, fit)
+    candidate = CandidateFit.of(run.model.structure.with_terms(terms), run.decays, run.fit)
     wrong = Hypothesis(run.excluded[name], "left out", Correction(), candidate.table, candidate, recording=name)
     return replace(run, corrected=(wrong,))
 
@@ -100,12 +97,11 @@ def test_corrections_that_make_up_for_each_other_go_together(twice: bool) -> Non
 
     def scaling(factor: float) -> Hypothesis:
         fault = Fault("gain", campaign.sensors[4].channel, f"reads {factor:g} times", "Check it.")
-        return Hypothesis(fault, "corrected", Correction(gains={4: factor}), base.table, base)
+        return Hypothesis(fault, "corrected", scale_channel(4, factor), base.table, base)
 
     wrong = [scaling(SHIFTED), scaling(1 / SHIFTED)] if twice else [scaling(SHIFTED)]
-    shifted = campaign if twice else _scaled(campaign, 1 / SHIFTED)
-    run = analysed(shifted) if not twice else run
-    corrected = replace(run, corrected=tuple(wrong), campaign=campaign)
+    stated = campaign if twice else scale_channel(4, 1 / SHIFTED).of_campaign(campaign)
+    corrected = replace(run, corrected=tuple(wrong), preprocessed=stated)
     after = take_back_corrections(corrected, silent)
     assert after.corrected == (() if twice else tuple(wrong))
 
@@ -121,10 +117,3 @@ def test_a_wrong_statement_stays_corrected() -> None:
     after = take_back_corrections(replace(run, corrected=corrected, preprocessed=wrong), silent)
     assert after.corrected == corrected
     assert after.campaign is campaign
-
-
-def _scaled(campaign: sprung.Campaign, factor: float) -> sprung.Campaign:
-    rows = np.arange(len(campaign.sensors))[:, None] == 4
-    return campaign.with_recordings(
-        [replace(one, values=np.where(rows, factor * one.values, one.values)) for one in campaign.recordings]
-    )

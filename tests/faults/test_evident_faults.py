@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 from real_campaigns import record
 from real_kinds import draw_test
 from real_outcomes import examine
@@ -22,6 +24,8 @@ from sprung.selection import ModelSearch, SensorError, UnlikeDrops, choose_struc
 from sprung.selection.evident_faults import with_evident_fault
 from sprung.selection.unlike_drops import find_unlike_drops
 from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, Vehicle
+
+Real = NDArray[np.float64]
 
 RATE, LATE, MOVED = 500.0, 3, 0.25
 CAR = Vehicle.from_parameters(TABLE_1_CAR.parameters | {"r_f": 2.5, "r_r": 2.2})
@@ -39,15 +43,20 @@ def sound() -> Campaign:
     )
 
 
-def delayed(campaign: Campaign, channel: str, samples: int) -> Campaign:
-    """Delay a channel in all drops."""
+def changed(campaign: Campaign, channel: str, change: Callable[[Real], Real]) -> Campaign:
+    """Change what a channel reads in all drops."""
     number = [sensor.channel for sensor in campaign.sensors].index(channel)
     recordings = []
     for one in campaign.recordings:
         values = one.values.copy()
-        values[number, samples:] = one.values[number, :-samples]
+        values[number] = change(one.values[number])
         recordings.append(replace(one, values=values))
     return campaign.with_recordings(recordings)
+
+
+def delayed(campaign: Campaign, channel: str, samples: int) -> Campaign:
+    """Delay a channel in all drops."""
+    return changed(campaign, channel, lambda values: np.concatenate([values[:samples], values[:-samples]]))
 
 
 def moved(campaign: Campaign, channel: str, by: float) -> Campaign:
@@ -114,14 +123,8 @@ def test_a_sensor_that_sits_elsewhere_is_found_and_corrected() -> None:
 
 def filtered(campaign: Campaign, channel: str, corner: float) -> Campaign:
     """Pass a channel through a first-order low-pass, corner in Hz."""
-    number = [sensor.channel for sensor in campaign.sensors].index(channel)
     share = 1 - np.exp(-2 * np.pi * corner / RATE)
-    recordings = []
-    for one in campaign.recordings:
-        values = one.values.copy()
-        values[number] = lfilter([share], [1, share - 1], values[number] - values[number, 0]) + values[number, 0]
-        recordings.append(replace(one, values=values))
-    return campaign.with_recordings(recordings)
+    return changed(campaign, channel, lambda values: values[0] + lfilter([share], [1, share - 1], values - values[0]))
 
 
 @pytest.mark.slow

@@ -79,13 +79,7 @@ def _of_sensor(base: CandidateFit, error: SensorError) -> Hypothesis:
     sensors = base.campaign.sensors
     channel = [sensor.channel for sensor in sensors].index(error.channel)
     if not error.found:
-        what = "corrected as it is, the channel still contradicts all other channels; it is left out"
-        fault = Fault(
-            "unlike-others", error.channel, what, "Check the sensor, its cable, its logger's filter and its place."
-        )
-        return Hypothesis(
-            fault, "left out", mask_channel(channel), base.table, base, is_fitted=True, is_sufficient=True
-        )
+        return _without_channel(base, channel)
     std = max(max(uncertainty, _LEFT * abs(size)) for size, uncertainty in error.found.values())
     rates = {recording.rate for recording in base.campaign.recordings}
     fault, correction, changes = _corrected(sensors[channel], channel, error, rates)
@@ -97,6 +91,14 @@ def _of_sensor(base: CandidateFit, error: SensorError) -> Hypothesis:
     return Hypothesis(
         fault, "corrected", correction, base.table, base, free=len(error.found), is_fitted=True, is_sufficient=True
     )
+
+
+def _without_channel(base: CandidateFit, channel: int) -> Hypothesis:
+    """Return the hypothesis that a channel, by its position, is of no use, corrected as it is."""
+    what = "corrected as it is, the channel still contradicts all other channels; it is left out"
+    do = "Check the sensor, its cable, its logger's filter and its place."
+    fault = Fault("unlike-others", base.campaign.sensors[channel].channel, what, do)
+    return Hypothesis(fault, "left out", mask_channel(channel), base.table, base, is_fitted=True, is_sufficient=True)
 
 
 def _corrected(

@@ -147,13 +147,13 @@ def _other_structures(search: ModelSearch, plain: ModelStructure) -> list[ModelS
     Several terms may have taken the place of one that resembles them, but for a little: friction alone. Beside each other two
     kinds of rubber lead to second optima: one of them may be one too many.
     """
-    terms, opened = search.structure.terms, search.open_terms(tuple(TERMS))
+    opened = search.open_terms(tuple(TERMS))
     laws = [
-        search.without(term).with_terms((*(one for one in terms if one != term), law))
+        replace(search, structure=search.without(term)).with_terms([law])
         for term in search.selected
         for law in laws_of_part(term, opened)[1:]
     ]
-    alone = [term for term in terms if TERMS[term].resembles_others and term not in plain.terms]
+    alone = [term for term in search.structure.terms if TERMS[term].resembles_others and term not in plain.terms]
     more = {*search.selected} - {*alone}
     rubber = {term: TERMS[term].counterpart for term in search.selected if TERMS[term].is_linear}
     alike = {one for term, other in rubber.items() if other in rubber for one in (term, other)}

@@ -219,13 +219,19 @@ class ModelSearch:
         return bool(known.any()) and float(ratio.mean()) > 1 + MODEL_ERROR
 
     @cached_property
+    def excess_over_noise(self) -> Real:
+        """Variance that the model leaves beyond the noise of each sensor, over that; 0 where unknown; shape (channel,)."""
+        variance, _, _ = self.fit.residual_moments
+        ratio = np.maximum(variance, self.sensor_noise) / np.where(self.sensor_noise > 0, self.sensor_noise, np.inf)
+        return np.maximum(ratio - 1.0, 0.0)
+
+    @cached_property
     def unexplained_gain(self) -> float:
         """Gain in twice the log-likelihood, over the overdispersion, if only the noise of the sensors were left."""
         if not self.has_model_error:
             return 0.0
-        variance, _, samples = self.fit.residual_moments
-        ratio = np.maximum(variance, self.sensor_noise) / np.where(self.sensor_noise > 0, self.sensor_noise, np.inf)
-        return float(np.sum(samples * np.log(np.maximum(ratio, 1.0)))) / self.overdispersion
+        _, _, samples = self.fit.residual_moments
+        return float(np.sum(samples * np.log1p(self.excess_over_noise))) / self.overdispersion
 
     @cached_property
     def is_misfit_large(self) -> bool:

@@ -177,9 +177,7 @@ def find_sensor_error(search: ModelSearch) -> SensorError | None:
 
 def _still_at_fault(search: ModelSearch) -> str | None:
     """Return the channel that was corrected before and still leaves far more than any other one; None without any."""
-    variance, _, _ = search.fit.residual_moments
-    noise = search.sensor_noise
-    left = np.where(noise > 0, variance / np.where(noise > 0, noise, np.inf) - 1, 0.0)
+    left = search.excess_over_noise
     worst = int(np.argmax(left))
     channel = search.structure.sensors[worst].channel
     stands_out = left[worst] > _OUTSTANDING**2 * np.delete(left, worst).max(initial=0.0)
