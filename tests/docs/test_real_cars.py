@@ -278,3 +278,16 @@ def test_laws_of_the_same_springs_are_compared() -> None:
     assert "air" in outcome.model
     assert not {"progressive", "bump-stop"} & {*outcome.model}
     assert outcome.worst_scaled[0] < 4
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("seed", "terms"), [(34, {"occupants", "air"}), (64, {"occupants", "friction"})])
+def test_two_unusual_properties_are_tried_together_before_every_usual_term(seed: int, terms: set[str]) -> None:
+    """Each hid the other: every usual term was fitted to the rigid body and to flexible ones first, in three times the time."""
+    ((campaign, truth),) = record([draw_test("two effects", seed)])
+    steps: list[str] = []
+    outcome = examine(campaign, truth, 600.0, progress=lambda step: steps.append(str(step)))
+    assert (outcome.verdict, outcome.faults) == ("accept", ())
+    assert terms <= {*outcome.model}
+    assert outcome.worst_scaled[0] < 4
+    assert sum(step.endswith("every usual term") for step in steps) == 1

@@ -11,8 +11,8 @@ import sprung
 from sprung.analysis import AnalysisOptions
 from sprung.analysis.analysis import Analysis
 from sprung.analysis.stages import STAGES
-from sprung.selection.ordinary_vehicle import fit_usual_terms
 from sprung.selection.term_fits import fit_forced_terms
+from sprung.selection.usual_terms import fit_usual_terms
 from sprung.uncertainty import KnownValue
 from sprung.vehicle import TABLE_1_CAR, Sensor, Vehicle
 

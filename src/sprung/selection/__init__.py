@@ -10,12 +10,8 @@ from sprung.selection.contact import begin_no_later, final_tolerance, from_conta
 from sprung.selection.description import TermDescription, describe_terms
 from sprung.selection.error_budget import FALSE_ALARM_SHARE, OVERDISPERSED, required_gain
 from sprung.selection.finite_rotation import REQUIRED_OF_ROTATION, select_finite_rotation
-from sprung.selection.from_ordinary_vehicle import (
-    fit_flexible_bodies,
-    fit_usual_linear_terms,
-    or_with_usual_linear_terms,
-    select_flexible_body,
-)
+from sprung.selection.flexible_body import fit_flexible_bodies, select_flexible_body
+from sprung.selection.from_ordinary_vehicle import fit_usual_linear_terms, or_with_usual_linear_terms
 from sprung.selection.further_terms import select_further_terms
 from sprung.selection.linear_terms import ENGINE, FLEXIBLE_BODIES, SEPARATE_TRACKS, STARTED_LATER
 from sprung.selection.low_pass import confirm_low_pass, corner_of, select_low_pass

@@ -7,7 +7,7 @@ priors, so that a term of which the records say little keeps the size that it us
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 
 from sprung.progress import Step
@@ -20,57 +20,14 @@ from sprung.selection.linear_terms import FLEXIBLE_BODIES
 from sprung.selection.ordinary_vehicle import (
     ITERATIONS,
     fit_from_ordinary_vehicle,
-    fit_usual_terms,
-    is_ordinary,
 )
 from sprung.selection.scoring import most_promising
 from sprung.selection.search import ModelSearch
 from sprung.selection.several_vehicles import divide_drops, of_group
-from sprung.selection.starts import start_variants
 from sprung.selection.structure import ModelStructure
 from sprung.selection.terms import TERMS
 from sprung.selection.unlike_drops import UnlikeDrops
-
-
-def select_flexible_body(search: ModelSearch) -> ModelSearch:
-    """Return the search with a body that twists or bends, if that explains what a rigid one leaves.
-
-    A rigid body that has to explain a flexible one ends anywhere: no score test there shows what is missing. From an ordinary
-    vehicle with it the way is short.
-
-    Parameters
-    ----------
-    search
-        The present model and its fit, linear.
-
-    Returns
-    -------
-    ModelSearch
-        Model and fit as given where neither explains it.
-    """
-    # A fit to little but what the body itself does may leave little, by a vehicle that nobody has seen.
-    is_astray = search.is_overdispersed and not is_ordinary(search)
-    if not search.is_misfit_large and not is_astray:
-        return search
-    # Where rubber is missing as well, a flexible body explains a part of the misfit alone.
-    bodies: Sequence[str] = FLEXIBLE_BODIES
-    rubber = tuple(term for term in _usual_terms(search.structure) if TERMS[term].is_linear)
-    for beside in dict.fromkeys(((), rubber)):
-        partly = []
-        for term, tried in fit_flexible_bodies(search, bodies, beside).items():
-            gain = tried.gain_over(search)
-            if (
-                gain > search.required(term)
-                and not search.leaves_misfit(tried.fit, MISFIT_LEFT)
-                and not tried.veto(term)
-            ):
-                # A rigid body did not show where a wheel last touched: samples before that would accept any further term.
-                needed, gains = leave_out_unneeded(replace(tried, steps=search.steps), search, keep=term)
-                return from_contact(needed.recorded({term: gain, **gains}, True, True))
-            partly += [term] if gain > search.required(term) else []
-            search = search.recorded({term: gain}, True, False, "an ordinary vehicle with it explains no more")
-        bodies = partly
-    return search
+from sprung.selection.usual_terms import begin_with_usual_terms, fit_usual_terms, open_usual_terms
 
 
 def or_with_usual_linear_terms(search: ModelSearch) -> ModelSearch:
@@ -113,50 +70,38 @@ def fit_usual_linear_terms(search: ModelSearch) -> ModelSearch:
     ModelSearch
         As given where there is none.
     """
-    usual = [term for term in _usual_terms(search.structure) if TERMS[term].is_linear and not TERMS[term].refines]
+    usual = [term for term in open_usual_terms(search.structure) if TERMS[term].is_linear and not TERMS[term].refines]
     if not usual:
         return search
     search.progress(Step(f"fitting an ordinary vehicle with {', '.join(usual)}"))
     return fit_from_ordinary_vehicle(search, search.with_terms(usual))
 
 
-def _usual_terms(structure: ModelStructure) -> tuple[str, ...]:
-    """Return the terms about which the recordings decide that most vehicles have."""
-    return tuple(term for term in structure.open_terms if TERMS[term].usual is not None and term not in structure.terms)
-
-
-def fit_flexible_bodies(
-    search: ModelSearch, terms: Sequence[str], beside: Sequence[str] = ()
-) -> dict[str, ModelSearch]:
-    """Fit a body that twists, or one that bends, from an ordinary vehicle that has it.
+def begin_from_ordinary_vehicle(search: ModelSearch, plain: ModelStructure) -> ModelSearch:
+    """Take the first steps of `select_from_ordinary_vehicle`, which show how much of the misfit it may explain.
 
     Parameters
     ----------
     search
-        The present model and its fit, linear.
-    terms
-        Which of them.
-    beside
-        Other linear terms that the vehicle has.
+        The present model and its fit.
+    plain
+        The structure without anything that the recordings brought into it.
 
     Returns
     -------
-    dict
-        By term, the likeliest first.
+    ModelSearch
+        As given where no usual term is open.
     """
-    found: dict[str, ModelSearch] = {}
-    for term in search.open_terms(terms):
-        search.progress(Step(f"fitting an ordinary vehicle with {', '.join((term, *beside))}"))
-        larger = search.with_terms([*beside, term])
-        ends = [
-            fit_from_ordinary_vehicle(search, variant)
-            for variant in start_variants(term, larger, search.fit.parameters)
-        ]
-        found[term] = max(ends, key=lambda end: end.fit.loglikelihood)
-    return dict(sorted(found.items(), key=lambda item: -item[1].fit.loglikelihood))
+    rich = _with_usual_terms(search, plain)
+    if rich is plain:
+        return search
+    search.progress(Step("fitting an ordinary vehicle with every usual term"))
+    return begin_with_usual_terms(search, rich)
 
 
-def select_from_ordinary_vehicle(search: ModelSearch, plain: ModelStructure) -> ModelSearch:
+def select_from_ordinary_vehicle(
+    search: ModelSearch, plain: ModelStructure, first: ModelSearch | None = None
+) -> ModelSearch:
     """Return the search from an ordinary vehicle with every usual term, without those that are not needed.
 
     Parameters
@@ -165,22 +110,30 @@ def select_from_ordinary_vehicle(search: ModelSearch, plain: ModelStructure) -> 
         The present model and its fit.
     plain
         The structure without anything that the recordings brought into it. A body that they show to be flexible stays so.
+    first
+        The first steps, if they are taken already.
 
     Returns
     -------
     ModelSearch
         Model and fit as given where the ordinary vehicle explains no more.
     """
-    terms = _usual_terms(plain)
-    if not terms:
+    rich = _with_usual_terms(search, plain)
+    if rich is plain:
         return search
-    search.progress(Step("fitting an ordinary vehicle with every usual term"))
-    flexible = tuple(name for name in search.selected if name in FLEXIBLE_BODIES)
-    rich = plain.with_terms((*plain.terms, *flexible, *terms))
-    found = select_beside_usual_terms(search, rich)
-    if flexible or not search.seeks_faults or found.fault is not None or found.structure is not search.structure:
+    first = first or begin_from_ordinary_vehicle(search, plain)
+    found = select_beside_usual_terms(search, rich, first)
+    is_flexible = not {*search.selected}.isdisjoint(FLEXIBLE_BODIES)
+    if is_flexible or not search.seeks_faults or found.fault is not None or found.structure is not search.structure:
         return found
     return replace(found, fault=_two_vehicles(search, rich))
+
+
+def _with_usual_terms(search: ModelSearch, plain: ModelStructure) -> ModelStructure:
+    """Return a structure with every usual term, and the flexible body of the search; as given where none is open."""
+    terms = open_usual_terms(plain)
+    flexible = tuple(name for name in search.selected if name in FLEXIBLE_BODIES)
+    return plain.with_terms((*plain.terms, *flexible, *terms)) if terms else plain
 
 
 def _two_vehicles(search: ModelSearch, rich: ModelStructure) -> UnlikeDrops | None:
@@ -195,7 +148,9 @@ def _two_vehicles(search: ModelSearch, rich: ModelStructure) -> UnlikeDrops | No
     return None if groups is None else UnlikeDrops(groups[1], {}, groups[0])
 
 
-def select_beside_usual_terms(search: ModelSearch, rich: ModelStructure) -> ModelSearch:
+def select_beside_usual_terms(
+    search: ModelSearch, rich: ModelStructure, first: ModelSearch | None = None
+) -> ModelSearch:
     """Return the search from an ordinary vehicle with some terms, without those not needed, and with further ones beside them.
 
     Parameters
@@ -204,13 +159,15 @@ def select_beside_usual_terms(search: ModelSearch, rich: ModelStructure) -> Mode
         The present model and its fit.
     rich
         Nonlinear, with all these terms.
+    first
+        The first steps of its fit, if they are taken already.
 
     Returns
     -------
     ModelSearch
         Model and fit as given where that vehicle explains no more.
     """
-    found = fit_usual_terms(search, rich)
+    found = fit_usual_terms(search, rich, first=first)
     if found is not None and (found := with_evident_fault(found)).fault is not None:
         return found
     if found is not None and search.leaves_misfit(found.fit, MISFIT_LEFT):

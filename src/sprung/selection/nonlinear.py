@@ -11,32 +11,30 @@ from dataclasses import replace
 from functools import partial
 
 from sprung.progress import Step
-from sprung.selection.contact import from_contact, is_likelier
+from sprung.selection.contact import is_likelier
 from sprung.selection.error_budget import MISFIT_LEFT
+from sprung.selection.flexible_body import fit_flexible_bodies
 from sprung.selection.from_ordinary_vehicle import (
-    fit_flexible_bodies,
+    begin_from_ordinary_vehicle,
     select_beside_usual_terms,
     select_from_ordinary_vehicle,
 )
-from sprung.selection.further_terms import (
-    laws_of_part,
-    select_further_terms,
-    select_terms_beside,
-    select_terms_in_whole,
+from sprung.selection.further_terms import laws_of_part, select_terms_beside
+from sprung.selection.likeliest_beginning import (
+    Beginning,
+    likeliest_beginnings,
+    refused_parts,
+    select_from_beginnings,
 )
 from sprung.selection.linear_terms import FLEXIBLE_BODIES
 from sprung.selection.nonlinear_terms import DAMPER_LAW
-from sprung.selection.ordinary_vehicle import fit_usual_terms, is_ordinary, likeliest_or_ordinary
-from sprung.selection.scoring import score_terms
+from sprung.selection.ordinary_vehicle import is_ordinary
+from sprung.selection.scoring import of_first_parts, score_terms
 from sprung.selection.search import ModelSearch
 from sprung.selection.stepwise import rank_terms, try_likeliest
 from sprung.selection.structure import ModelStructure
-from sprung.selection.term_fits import begin_nonlinear_fit, fit_term, select_gravity_leakage
+from sprung.selection.term_fits import select_gravity_leakage
 from sprung.selection.terms import TERMS
-
-_TRIED_FIRST, _BASES = 3, 2
-"""Parts whose laws are compared first, as scores do not tell laws of one part apart; and bases from which the search goes on,
-until one leaves little."""
 
 SearchFromBase = Callable[[ModelSearch], ModelSearch]
 """A search for nonlinear terms, given the search so far for what it has tried."""
@@ -65,7 +63,7 @@ def select_nonlinear_terms(search: ModelSearch, plain: ModelStructure) -> ModelS
     search, scores = score_terms(search, terms)
     search, ranked = rank_terms(search, scores, 1.0)
     best, steps = search, search.steps
-    for select in _searches(search, plain, terms, _of_first_parts(ranked)):
+    for select in _searches(search, plain, terms, of_first_parts(ranked)):
         found = select(replace(search, steps=steps))
         steps = found.steps
         if found.fault is not None:
@@ -91,20 +89,12 @@ def select_nonlinear_terms(search: ModelSearch, plain: ModelStructure) -> ModelS
     return select_gravity_leakage(best) if best.structure.is_nonlinear else best
 
 
-def _of_first_parts(ranked: Sequence[str]) -> list[str]:
-    """Return those of some nonlinear terms, best first, that are laws of the first few parts."""
-    first = [*dict.fromkeys(TERMS[term].part or term for term in ranked)][:_TRIED_FIRST]
-    return [term for term in ranked if (TERMS[term].part or term) in first]
-
-
 def _searches(
     search: ModelSearch, plain: ModelStructure, terms: Sequence[str], ranked: Sequence[str]
 ) -> Iterator[SearchFromBase]:
     """Yield the searches from every base, the simplest first."""
-    # A part that vibrates by itself is nothing that only took up some of a nonlinear motion.
-    has_part = any(TERMS[term].explains_all for term in search.selected)
-    if ranked and has_part:
-        yield partial(_from_base, search, ranked)
+    # Of a vehicle that nobody would recognise unlikely gains of its sensors may hide how much is left.
+    is_of_no_use = search.is_doubtful or not is_ordinary(search)
     found = search.structure
     plain = replace(
         plain,
@@ -115,29 +105,50 @@ def _searches(
     )
     is_plain = plain.names == found.names
     simplest = search if is_plain else search.refit(plain)
+    # A part that vibrates by itself is nothing that only took up some of a nonlinear motion; rubber beside it may be.
+    parts = [term for term in search.selected if TERMS[term].explains_all]
+    with_parts = plain.with_terms((*plain.terms, *parts))
+    has_more = with_parts.names != found.names
+    if ranked and parts:
+        yield partial(_from_base, search.refit(with_parts) if has_more and is_of_no_use else search, ranked)
     if ranked:
         yield partial(_from_base, simplest, ranked)
-    # Of a vehicle that nobody would recognise unlikely gains of its sensors may hide how much is left.
-    is_of_no_use = search.is_doubtful or not is_ordinary(search)
+    bases = [simplest] if is_plain else [search, simplest]
+    beginnings: list[Beginning] = []
     if is_of_no_use:
         yield partial(_with_law_of_dampers, search, plain)
-        yield partial(_with_usual_terms, search, plain)
+        usual = begin_from_ordinary_vehicle(search, plain)
+        beginnings = _likelier_beginnings(search, usual, bases, terms)
+        if beginnings:
+            yield partial(_from_beginnings, search, beginnings)
+        yield partial(_with_usual_terms, search, plain, usual)
         # Beside linear terms that are no usual ones, an anti-roll bar say, and without rubber that may lead astray.
         friction = [term for term in found.open_terms if TERMS[term].resembles_others and term not in found.terms]
         yield partial(_with_law_of_dampers, search, found.with_terms((*found.terms, *friction)))
-    if ranked and not (is_plain or has_part):
+    if ranked and not is_plain and (not parts or (has_more and is_of_no_use)):
         yield partial(_from_base, search, ranked)
     # A linear fit that has gone astray for the sake of friction, small motions' friction above all, shows no score of it.
     hidden = [term for term in search.open_terms(tuple(TERMS)) if TERMS[term].resembles_others and term not in ranked]
-    bases = [simplest] if is_plain else [search, simplest]
     for base in bases if is_of_no_use and hidden else ():
         yield partial(_from_base, base, hidden)
-    refused = _refused_parts(search)
+    refused = refused_parts(search)
     flexible = [term for term in FLEXIBLE_BODIES if term in refused]
     for body in fit_flexible_bodies(simplest, flexible).values() if is_of_no_use else ():
-        yield partial(_with_usual_terms, body, plain)
-    if is_of_no_use or search.lacks_something:
+        yield partial(_with_usual_terms, body, plain, None)
+    if not beginnings and (is_of_no_use or search.lacks_something):
         yield partial(_from_likeliest_beginning, bases, terms)
+
+
+def _likelier_beginnings(
+    search: ModelSearch, usual: ModelSearch, bases: Sequence[ModelSearch], terms: Sequence[str]
+) -> list[Beginning]:
+    """Return what goes before all usual terms: the beginnings that explain more than these at first, where they leave much."""
+    if usual is search:
+        return likeliest_beginnings(bases, terms)
+    if not search.leaves_misfit(usual.fit, MISFIT_LEFT):
+        return []
+    found = likeliest_beginnings(bases, terms)
+    return found if found and found[0].first.fit.loglikelihood > usual.fit.loglikelihood else []
 
 
 def _other_structures(search: ModelSearch, plain: ModelStructure) -> list[ModelStructure]:
@@ -166,9 +177,11 @@ def _other_structures(search: ModelSearch, plain: ModelStructure) -> list[ModelS
     return [plain.with_terms((*plain.terms, *alone)), *from_plain] if alone and more else from_plain
 
 
-def _with_usual_terms(base: ModelSearch, plain: ModelStructure, so_far: ModelSearch) -> ModelSearch:
+def _with_usual_terms(
+    base: ModelSearch, plain: ModelStructure, first: ModelSearch | None, so_far: ModelSearch
+) -> ModelSearch:
     """Add every usual term, to a body that is not rigid as well if the base has one, and leave out what is not needed."""
-    return select_from_ordinary_vehicle(replace(base, steps=so_far.steps), plain)
+    return select_from_ordinary_vehicle(replace(base, steps=so_far.steps), plain, first)
 
 
 def _with_law_of_dampers(base: ModelSearch, beside: ModelStructure, so_far: ModelSearch) -> ModelSearch:
@@ -179,86 +192,15 @@ def _with_law_of_dampers(base: ModelSearch, beside: ModelStructure, so_far: Mode
     return select_beside_usual_terms(replace(base, steps=so_far.steps), beside.with_terms((*beside.terms, *law)))
 
 
-def _refused_parts(search: ModelSearch) -> list[str]:
-    """Return the terms that have to explain everything and gained more than chance does, but were refused.
-
-    Parts that vibrate by themselves, a rigid axle: beside what else is missing they may explain but a small part of it.
-    """
-    refused = {
-        step.extra
-        for step in search.steps
-        if step.fitted and not step.taken and step.gain > search.significant(step.extra)
-    }
-    return [term for term in search.open_terms([*refused]) if TERMS[term].explains_all]
-
-
-def _with_refused_parts(search: ModelSearch) -> list[ModelSearch]:
-    """Fit each part that was refused, beside nothing.
-
-    Springs that are no springs hide a body that is not rigid or people on its seats, and these hide them: neither explains
-    alone what both of them leave.
-    """
-    parts = _refused_parts(search)
-    flexible = [term for term in FLEXIBLE_BODIES if term in parts]
-    found = fit_flexible_bodies(search, flexible)
-    found |= {term: fit_term(search, term) for term in parts if term not in flexible}
-    # One that explains less than no part does ended astray.
-    return [
-        base
-        for term, base in found.items()
-        if base.gain_over(search) > 0 and not TERMS[term].is_something_else(base.fit.parameters)
-    ]
+def _from_beginnings(base: ModelSearch, beginnings: Sequence[Beginning], so_far: ModelSearch) -> ModelSearch:
+    """Go on from the likeliest of some parts with a nonlinear term each."""
+    return select_from_beginnings(replace(base, steps=so_far.steps), beginnings)
 
 
 def _from_likeliest_beginning(bases: Sequence[ModelSearch], terms: Sequence[str], so_far: ModelSearch) -> ModelSearch:
-    """Go on from the part and the nonlinear term that explain most together, though they may leave much to further terms.
-
-    Only the beginnings of the decays are fitted until these explain the misfit.
-    """
-    search = replace(bases[0], steps=so_far.steps)
-    ranked: list[tuple[ModelSearch, list[str]]] = []
-    for base in (*bases, *_with_refused_parts(replace(bases[-1], steps=so_far.steps))):
-        scored, scores = score_terms(base, terms)
-        _, promising = rank_terms(scored, scores, 1.0)
-        ranked += [(scored, promising)] if promising else []
-    if not ranked:
-        return search
-    # What part there is makes more of a difference than which law a spring or damper has.
-    first = [
-        (_with_first_steps(base, promising[0]), base, _of_first_parts(promising)[1:]) for base, promising in ranked
-    ]
-    best = search
-    for likeliest, base, others in sorted(first, key=lambda one: -one[0].fit.loglikelihood)[:_BASES]:
-        ends = [likeliest, *(_with_first_steps(base, term) for term in others)]
-        start = max(ends, key=lambda one: one.fit.loglikelihood)
-        start = likeliest_or_ordinary(search, [start], start.structure)
-        if search.leaves_most(start.fit):
-            break
-        found = _select_from_start(replace(search, steps=best.steps), start)
-        best = found if is_likelier(found, best) else replace(best, steps=found.steps)
-        if best.structure.is_nonlinear and not best.lacks_something:
-            break
-    return best
-
-
-def _select_from_start(search: ModelSearch, start: ModelSearch) -> ModelSearch:
-    """Go on from the beginnings of the decays, to further terms and to the whole decays; as given where much is left."""
-    early = replace(start, steps=search.steps, decays=start.fit.decays)
-    found = select_further_terms(from_contact(early, on_the_way=True), whole=False)
-    if search.leaves_misfit(found.fit, MISFIT_LEFT):
-        return replace(search, steps=found.steps)
-    # Term after term led it through models that lacked the others, to where friction holds with what they make, say.
-    anew = fit_usual_terms(replace(search, steps=found.steps), found.structure)
-    if anew is not None and anew.fit.loglikelihood > found.fit.loglikelihood:
-        found = replace(anew, decays=found.decays)
-    found = found.recorded({term: found.wald_gain(term) for term in found.selected}, True, True)
-    return select_terms_in_whole(found, search.decays)
-
-
-def _with_first_steps(search: ModelSearch, term: str) -> ModelSearch:
-    """Return the search with a term, after the first steps of its fit to the beginnings of the decays."""
-    larger = search.with_terms([term])
-    return replace(search, structure=larger, fit=begin_nonlinear_fit(search, larger))
+    """Go on from the part and the nonlinear term that explain most together, those included that were refused meanwhile."""
+    known = [replace(base, steps=so_far.steps) for base in bases]
+    return select_from_beginnings(known[0], likeliest_beginnings(known, terms))
 
 
 def _from_base(base: ModelSearch, terms: Sequence[str], so_far: ModelSearch) -> ModelSearch:

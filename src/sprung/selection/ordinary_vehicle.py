@@ -6,11 +6,10 @@ that is missing is found.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 
 from sprung.estimation import NEAR, UsualValue, VehicleSize, fit_linear, usual_vehicle
-from sprung.selection.linear_terms import FLEXIBLE_BODIES
 from sprung.selection.search import ModelSearch
 from sprung.selection.starts import fit_structure, start_values
 from sprung.selection.structure import ModelStructure
@@ -39,7 +38,7 @@ _FAR = 4.0
 ITERATIONS = 22
 """Of a fit from an ordinary vehicle, at the most."""
 
-_FIRST_ITERATIONS = 8
+FIRST_ITERATIONS = 8
 """After which the fit of an ordinary vehicle has to have explained some of the misfit."""
 
 _HELD = 1.1
@@ -243,28 +242,6 @@ def or_from_ordinary_vehicle(search: ModelSearch) -> ModelSearch:
     return other if other.fit.converged and other.gain_over(search) > enough else search
 
 
-def likeliest_or_ordinary(search: ModelSearch, ends: Sequence[ModelSearch], structure: ModelStructure) -> ModelSearch:
-    """Return the likeliest of some fits of a nonlinear structure and of that from an ordinary vehicle with its terms.
-
-    A linear vehicle that had to make up for what is missing may be one from which no step leads back.
-
-    Parameters
-    ----------
-    search
-        The model so far and its fit.
-    ends
-        Fits that began from it.
-    structure
-        Their model.
-
-    Returns
-    -------
-    ModelSearch
-    """
-    ordinary = fit_usual_terms(search, structure)
-    return max(ends if ordinary is None else [*ends, ordinary], key=lambda end: end.fit.loglikelihood)
-
-
 def _refit_from_usual_values(search: ModelSearch) -> ModelSearch:
     """Fit a nonlinear model again from where its fit has ended, parameters that no vehicle has from usual values."""
     own, (_, usual) = search.fit.parameters, ordinary_vehicle(search.structure.with_terms(()))
@@ -276,73 +253,7 @@ def _refit_from_usual_values(search: ModelSearch) -> ModelSearch:
         NEAR,
         search.progress,
         beginning_only=True,
-        most=_FIRST_ITERATIONS,
+        most=FIRST_ITERATIONS,
         start=start,
     )
     return replace(search, fit=first).refit(search.structure)
-
-
-def fit_usual_terms(search: ModelSearch, rich: ModelStructure, *, with_lost: bool = True) -> ModelSearch | None:
-    """Fit a structure from an ordinary vehicle whose terms have their usual sizes, to the beginnings of the decays.
-
-    A fit of everything at once may lose friction, of one axle even, and what resembles it then makes up for it: it begins
-    without friction then.
-
-    Parameters
-    ----------
-    search
-        The present model and its fit.
-    rich
-        What is fitted.
-    with_lost
-        Whether terms that were lost are tried once more.
-
-    Returns
-    -------
-    ModelSearch or None
-        With usual values as priors of the terms. None where it leaves too much of the misfit at first.
-    """
-    values, usual = ordinary_vehicle(rich)
-    # No size is usual for a body that is flexible: it is as the present fit has it.
-    of_body = [name for term in FLEXIBLE_BODIES for name in TERMS[term].parameters(rich.tracks, rich.layout)]
-    values |= {name: search.fit.parameters[name] for name in of_body if name in search.fit.names and name in rich.names}
-    at_start = fit_linear(
-        search.decays, rich.linear_models, rich.sensors, rich.known, start=values, usual=usual, most=0
-    )
-    rich = replace(rich, usual=usual | held_sizes(rich, values))
-    start = replace(search, structure=rich, fit=at_start)
-    best = _fit_beginnings(search, start, rich)
-    lost = {term for term in rich.terms if TERMS[term].resembles_others and (best is None or best.is_lost(term))}
-    if lost and with_lost:
-        without = start.without(*lost)
-        other = _fit_beginnings(search, start, without) if best is None else _refit_beginnings(search, best, without)
-        again = None if other is None else _fit_again(search, other, rich, lost)
-        best = max(
-            (end for end in (best, again) if end is not None), key=lambda end: end.fit.loglikelihood, default=None
-        )
-    return None if best is None else replace(best, structure=replace(rich, usual=usual_sizes(rich, values)))
-
-
-def _fit_beginnings(search: ModelSearch, start: ModelSearch, structure: ModelStructure) -> ModelSearch | None:
-    """Fit a structure from a start; None where much of the misfit is left after some steps."""
-    found = _refit_beginnings(search, start, structure, _FIRST_ITERATIONS)
-    if search.leaves_most(found.fit):
-        return None
-    return found if found.fit.converged else _refit_beginnings(search, found, structure)
-
-
-def _fit_again(
-    search: ModelSearch, start: ModelSearch, structure: ModelStructure, lost: Collection[str]
-) -> ModelSearch:
-    """Fit a structure from a fit without terms that were lost; not to the end where they are lost once more."""
-    found = _refit_beginnings(search, start, structure, _FIRST_ITERATIONS)
-    if found.fit.converged or any(found.is_lost(term) for term in lost):
-        return found
-    return _refit_beginnings(search, found, structure)
-
-
-def _refit_beginnings(
-    search: ModelSearch, start: ModelSearch, structure: ModelStructure, most: int = ITERATIONS
-) -> ModelSearch:
-    """Fit a structure until what is left to gain is less than any term needs."""
-    return start.refit(structure, most, beginning_only=True, enough=search.required_of_switch)

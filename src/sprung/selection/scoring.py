@@ -34,6 +34,9 @@ WORTH_A_FIT = 4.0
 """Factor on the expected gain of a linear term before it is compared with the required one: a score test understates the
 gain of terms that are far from neutral. After one step towards the term, only what is still expected counts so much."""
 
+_PARTS = 3
+"""Parts whose laws are compared by their first steps."""
+
 _RATE, _DURATION = 250.0, 3.0
 """Hz and s of the thinned decays that are stepped for a score: enough for wheel hop and for all of a usual decay."""
 
@@ -232,3 +235,15 @@ def _score_together(search: ModelSearch, decays: Sequence[FreeDecay], terms: Seq
         tilting=search.structure.gravity_leakage,
         low_pass=search.structure.low_pass,
     )
+
+
+def of_first_parts(ranked: Sequence[str]) -> list[str]:
+    """Return those of some terms that are laws of the first few parts: scores do not tell laws of one part apart.
+
+    Parameters
+    ----------
+    ranked
+        Nonlinear terms, best first.
+    """
+    first = [*dict.fromkeys(TERMS[term].part or term for term in ranked)][:_PARTS]
+    return [term for term in ranked if (TERMS[term].part or term) in first]

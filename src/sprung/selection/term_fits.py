@@ -18,7 +18,6 @@ from sprung.selection.ordinary_vehicle import (
     ITERATIONS,
     fit_from_ordinary_vehicle,
     is_ordinary,
-    likeliest_or_ordinary,
     ordinary_vehicle,
     with_usual_scale,
 )
@@ -27,6 +26,7 @@ from sprung.selection.search import ModelSearch
 from sprung.selection.starts import fit_structure, has_positive_masses, neutral_values, start_values
 from sprung.selection.structure import ModelStructure
 from sprung.selection.terms import TERMS
+from sprung.selection.usual_terms import likeliest_or_ordinary
 from sprung.uncertainty import KnownValue
 
 _STEPS_FROM_BELOW = 3
