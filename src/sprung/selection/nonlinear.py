@@ -93,8 +93,10 @@ def _searches(
     search: ModelSearch, plain: ModelStructure, terms: Sequence[str], ranked: Sequence[str]
 ) -> Iterator[SearchFromBase]:
     """Yield the searches from every base, the simplest first."""
-    # Of a vehicle that nobody would recognise unlikely gains of its sensors may hide how much is left.
-    is_of_no_use = search.is_doubtful or not is_ordinary(search)
+    # A part that vibrates by itself is nothing that only took up some of a nonlinear motion.
+    has_part = any(TERMS[term].explains_all for term in search.selected)
+    if ranked and has_part:
+        yield partial(_from_base, search, ranked)
     found = search.structure
     plain = replace(
         plain,
@@ -105,14 +107,10 @@ def _searches(
     )
     is_plain = plain.names == found.names
     simplest = search if is_plain else search.refit(plain)
-    # A part that vibrates by itself is nothing that only took up some of a nonlinear motion; rubber beside it may be.
-    parts = [term for term in search.selected if TERMS[term].explains_all]
-    with_parts = plain.with_terms((*plain.terms, *parts))
-    has_more = with_parts.names != found.names
-    if ranked and parts:
-        yield partial(_from_base, search.refit(with_parts) if has_more and is_of_no_use else search, ranked)
     if ranked:
         yield partial(_from_base, simplest, ranked)
+    # Of a vehicle that nobody would recognise unlikely gains of its sensors may hide how much is left.
+    is_of_no_use = search.is_doubtful or not is_ordinary(search)
     bases = [simplest] if is_plain else [search, simplest]
     beginnings: list[Beginning] = []
     if is_of_no_use:
@@ -125,7 +123,7 @@ def _searches(
         # Beside linear terms that are no usual ones, an anti-roll bar say, and without rubber that may lead astray.
         friction = [term for term in found.open_terms if TERMS[term].resembles_others and term not in found.terms]
         yield partial(_with_law_of_dampers, search, found.with_terms((*found.terms, *friction)))
-    if ranked and not is_plain and (not parts or (has_more and is_of_no_use)):
+    if ranked and not (is_plain or has_part):
         yield partial(_from_base, search, ranked)
     # A linear fit that has gone astray for the sake of friction, small motions' friction above all, shows no score of it.
     hidden = [term for term in search.open_terms(tuple(TERMS)) if TERMS[term].resembles_others and term not in ranked]
