@@ -17,10 +17,7 @@ from sprung.selection.error_budget import MISFIT_LEFT
 from sprung.selection.evident_faults import with_evident_fault
 from sprung.selection.further_terms import laws_of_part, select_terms_beside
 from sprung.selection.linear_terms import FLEXIBLE_BODIES
-from sprung.selection.ordinary_vehicle import (
-    ITERATIONS,
-    fit_from_ordinary_vehicle,
-)
+from sprung.selection.ordinary_vehicle import ITERATIONS, fit_from_ordinary_vehicle
 from sprung.selection.scoring import most_promising
 from sprung.selection.search import ModelSearch
 from sprung.selection.several_vehicles import divide_drops, of_group
