@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 from campaigns import AXLES, DURATION, LOAD, RATE, WEIGHING, WITH_LOAD, Case
-from pages import VERDICTS, Summary, arguments, summarise, table, write
+from pages import VERDICTS, Summary, arguments, summarise, table, write, write_figure
 
 from sprung.vehicle import SCHOOL_BUS, TABLE_1_CAR, Vehicle
 
@@ -222,7 +222,7 @@ def draw(headline: Sequence[Summary], others: Sequence[Summary], path: Path) -> 
     if importlib.util.find_spec("matplotlib") is None:
         return False
     plt: Any = importlib.import_module("matplotlib.pyplot")
-    plt.rcParams.update({"font.size": 9, "svg.fonttype": "none", "svg.hashsalt": "sprung"})
+    plt.rcParams.update({"font.size": 9, "svg.fonttype": "none"})
     plt.rcParams.update({"axes.spines.top": False, "axes.spines.right": False, "legend.frameon": False})
     figure, (left, right) = plt.subplots(1, 2, figsize=(11, 3.8), width_ratios=(3, 2), layout="constrained")
     for axes, summaries in ((left, headline), (right, others)):
@@ -256,8 +256,7 @@ def draw(headline: Sequence[Summary], others: Sequence[Summary], path: Path) -> 
     for axes in (left, right):
         low, high = axes.get_ylim()
         axes.set_ylim(low, high + 0.2 * (high - low))  # room for the legend
-    path.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(path, metadata={"Date": None})
+    write_figure(figure, path)
     return True
 
 

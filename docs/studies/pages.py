@@ -214,3 +214,12 @@ def write(
         lines = ",\n".join("  " + json.dumps(case, ensure_ascii=False, allow_nan=False) for case in cases)
         lists.append(f'"{key}": [\n{lines}\n]')
     (folder / f"{name}.json").write_text("{\n" + ",\n".join(lists) + "\n}\n", encoding="utf-8")
+
+
+def write_figure(figure: Any, path: Path) -> None:
+    """Write a figure (matplotlib) as SVG; the same figure is the same file."""
+    from matplotlib import rc_context  # noqa: PLC0415 (optional)
+
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with rc_context({"svg.hashsalt": "sprung"}):
+        figure.savefig(path, metadata={"Date": None})

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from pages import PROGRAM, VERDICTS, arguments, figures, report_progress, run, table, write
+from pages import PROGRAM, VERDICTS, arguments, figures, report_progress, run, table, write, write_figure
 from real_kinds import KINDS, NO_VEHICLE, NOISE, RATE, WEIGHING
 from real_outcomes import SLOWEST, Outcome, examine_seeds
 
@@ -253,8 +253,7 @@ def _text(value: float | None) -> str:
 def draw(numbers: Numbers, path: Path) -> bool:
     """Draw the worst error of each campaign by kind; False without matplotlib."""
     try:
-        from matplotlib import rc_context  # noqa: PLC0415 (optional)
-        from matplotlib.figure import Figure  # noqa: PLC0415
+        from matplotlib.figure import Figure  # noqa: PLC0415 (optional)
     except ImportError:
         return False
     kinds = [one["kind"] for one in numbers["kinds"] if one["kind"] not in NO_VEHICLE]
@@ -269,10 +268,7 @@ def draw(numbers: Numbers, path: Path) -> bool:
     axes.axvline(2.0, color="#888888", linewidth=0.8)
     axes.set(xscale="log", xlabel="error of the worst plain parameter, %", yticks=range(len(kinds)), yticklabels=kinds)
     axes.invert_yaxis()
-    path.parent.mkdir(parents=True, exist_ok=True)
-    # The same figure is the same file.
-    with rc_context({"svg.hashsalt": "sprung"}):
-        figure.savefig(path, metadata={"Date": None})
+    write_figure(figure, path)
     return True
 
 
