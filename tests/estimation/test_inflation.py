@@ -5,7 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sprung.estimation.overdispersion import autocorrelation_inflation, birge_ratio, independent_records
+from sprung.estimation.overdispersion import (
+    autocorrelation_inflation,
+    birge_ratio,
+    drop_corrections,
+    independent_records,
+)
 
 
 def test_white_residuals_are_left_alone() -> None:
@@ -101,3 +106,11 @@ def test_drops_that_are_there_three_times_disagree_three_times_as_much() -> None
 
 def test_one_drop_cannot_disagree() -> None:
     assert simulated(1, 9.0, 1) == 1.0
+
+
+def test_a_drop_whose_motion_runs_away_determines_nothing() -> None:
+    """Derivatives overflow: of the other drops the corrections are what they are without it."""
+    scores, informations = np.array([[3.0, 0.0], [np.nan, np.nan]]), np.array([np.eye(2), np.full((2, 2), np.nan)])
+    squares, directions = drop_corrections(scores, informations)
+    assert squares.tolist() == [9.0, 0.0]
+    assert directions.tolist() == [2, 0]

@@ -163,6 +163,10 @@ def drop_corrections(scores: Real, informations: Real) -> tuple[Real, NDArray[np
     """
     squares, directions = np.zeros(len(scores)), np.zeros(len(scores), dtype=np.int64)
     for drop, (score, information) in enumerate(zip(scores, informations, strict=True)):
+        if not np.isfinite(
+            information
+        ).all():  # derivatives of a motion that runs away overflow: they determine nothing
+            continue
         eigenvalues, vectors = np.linalg.eigh(information)
         determined = eigenvalues > _DETERMINED * eigenvalues.max(initial=0.0)
         squares[drop] = np.sum((vectors.T @ score)[determined] ** 2 / eigenvalues[determined])

@@ -10,7 +10,7 @@ from sprung.selection.backward_elimination import leave_out_unneeded
 from sprung.selection.contact import from_contact
 from sprung.selection.error_budget import MISFIT_LEFT
 from sprung.selection.linear_terms import FLEXIBLE_BODIES
-from sprung.selection.ordinary_vehicle import fit_from_ordinary_vehicle, is_ordinary
+from sprung.selection.ordinary_vehicle import fit_from_ordinary_vehicle, is_astray
 from sprung.selection.search import ModelSearch
 from sprung.selection.starts import start_variants
 from sprung.selection.terms import TERMS
@@ -33,9 +33,7 @@ def select_flexible_body(search: ModelSearch) -> ModelSearch:
     ModelSearch
         Model and fit as given where neither explains it.
     """
-    # A fit to little but what the body itself does may leave little, by a vehicle that nobody has seen.
-    is_astray = search.is_overdispersed and not is_ordinary(search)
-    if not search.is_misfit_large and not is_astray:
+    if not (search.is_misfit_large or is_astray(search)):
         return search
     # Where rubber is missing as well, a flexible body explains a part of the misfit alone.
     bodies: Sequence[str] = FLEXIBLE_BODIES

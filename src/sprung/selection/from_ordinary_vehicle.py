@@ -10,6 +10,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
+import numpy as np
+
 from sprung.progress import Step
 from sprung.selection.backward_elimination import hold_undetermined, leave_out_unneeded
 from sprung.selection.contact import from_contact, is_likelier
@@ -174,6 +176,9 @@ def select_beside_usual_terms(
         terms = [term for term in rich.terms if TERMS[term].usual is not None]
         return search.recorded(dict.fromkeys(terms, 0.0), True, False, against)
     found = _without_unneeded(found)
+    if not np.isfinite(found.fit.loglikelihood):
+        against = "without the terms that are not needed beside it the motion has no bounds"
+        return replace(search, steps=found.steps).recorded(dict.fromkeys(found.selected, 0.0), True, False, against)
     return select_terms_beside(found)
 
 
@@ -189,8 +194,11 @@ def _with_likeliest_law(search: ModelSearch) -> ModelSearch:
 
 
 def _without_unneeded(search: ModelSearch) -> ModelSearch:
-    """Leave out all terms that are not missed together, and fit what is left to the beginnings of the decays."""
-    while True:
+    """Leave out all terms that are not missed together, and fit what is left to the beginnings of the decays.
+
+    Ends where what is left moves without bounds: nothing can be said of its terms.
+    """
+    while np.isfinite(search.fit.loglikelihood):
         against = {term: search.veto(term) for term in search.selected}
         gains = {term: search.wald_gain(term) for term in search.selected}
         if (held := _with_held_parts(search, gains)) is not None:
@@ -209,6 +217,7 @@ def _without_unneeded(search: ModelSearch) -> ModelSearch:
         for term in unneeded:
             search = search.recorded({term: gains[term]}, True, False, against[term])
         search = search.refit(search.without(*unneeded), ITERATIONS, beginning_only=True)
+    return search
 
 
 def _with_held_parts(search: ModelSearch, gains: Mapping[str, float]) -> ModelStructure | None:

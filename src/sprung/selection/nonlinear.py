@@ -28,7 +28,7 @@ from sprung.selection.likeliest_beginning import (
 )
 from sprung.selection.linear_terms import FLEXIBLE_BODIES
 from sprung.selection.nonlinear_terms import DAMPER_LAW
-from sprung.selection.ordinary_vehicle import is_ordinary
+from sprung.selection.ordinary_vehicle import is_astray
 from sprung.selection.scoring import of_first_parts, score_terms
 from sprung.selection.search import ModelSearch
 from sprung.selection.stepwise import rank_terms, try_likeliest
@@ -109,8 +109,7 @@ def _searches(
     simplest = search if is_plain else search.refit(plain)
     if ranked:
         yield partial(_from_base, simplest, ranked)
-    # Of a vehicle that nobody would recognise unlikely gains of its sensors may hide how much is left.
-    is_of_no_use = search.is_doubtful or not is_ordinary(search)
+    is_of_no_use = search.is_doubtful or is_astray(search)
     bases = [simplest] if is_plain else [search, simplest]
     beginnings: list[Beginning] = []
     if is_of_no_use:

@@ -113,6 +113,23 @@ def may_be_astray(search: ModelSearch) -> bool:
     return search.is_overdispersed or not is_ordinary(search)
 
 
+def is_astray(search: ModelSearch) -> bool:
+    """Whether a fit has ended at a wrong optimum: it leaves more than noise, with a vehicle that nobody would recognise.
+
+    A fit to little but what the body itself does, or with unlikely gains of the sensors, may leave little; noise it leaves not.
+
+    Parameters
+    ----------
+    search
+        The present model and its fit.
+
+    Returns
+    -------
+    bool
+    """
+    return search.is_overdispersed and not is_ordinary(search)
+
+
 def _is_near(value: float, usual: UsualValue) -> bool:
     """Whether a value is not far from a usual one."""
     factor: float = usual.spread**_FAR
