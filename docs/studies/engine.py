@@ -153,7 +153,9 @@ def _row(kind: str, trials: Sequence[Trial]) -> list[str]:
     asked = {"engine", "friction"} if "friction" in kind else {"engine"}
     right = [one for one in trials if set(one.model) == asked and one.verdict != "reject"]
     names = [name for name in (right[0].errors if right else {}) if all(name in one.errors for one in right)]
-    errors = np.array([[one.errors[name] for name in names] for one in right], dtype=float).reshape(-1, len(names), 3)
+    errors = np.array([[one.errors[name] for name in names] for one in right], dtype=float).reshape(
+        len(right), len(names), 3
+    )
     rms = dict(zip(names, np.sqrt((errors[:, :, 0] ** 2).mean(axis=0)).tolist(), strict=True))
     worst = max(rms, key=lambda name: rms[name], default="m_e")
     states, forced = (Counter(each) for each in ([one.verdict for one in trials], [one.forced for one in trials]))

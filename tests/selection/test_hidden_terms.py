@@ -35,6 +35,15 @@ BENDING = {"m_v": 80.0, "k_v": 80.0 * (2 * 3.1416 * 11.0) ** 2, "c_v": 400.0, "b
 SOFT_MOUNTS = {"k_df": 1.6e5, "k_dr": 2.2e5, "c_df": 350.0, "c_dr": 300.0}
 """Rubber mounts of dampers."""
 
+ON_THE_FLOOR = {
+    "name": "ballast",
+    "items": [
+        {"mass": 92.9, "position": (-1.1, 0.3, 0.5)},
+        {"mass": 61.9, "position": (-2.07, -0.3, 0.5)},
+    ],
+}
+"""A tenth of the car's mass."""
+
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
@@ -92,3 +101,17 @@ def test_a_knee_at_no_velocity_is_a_friction() -> None:
     assert not curve.is_something_else(values | {"v_kr": 0.05})
     assert curve.is_something_else(values | {"v_kr": 0.001})
     assert curve.counterpart == "friction"
+
+
+@pytest.mark.slow
+def test_an_engine_behind_friction_is_no_body_that_bends() -> None:
+    """Bending around points twenty metres outside explains the recordings as well: a part that means nothing is not the end."""
+    engine = {"m_e": 187.0, "k_e": 187.0 * (2 * 3.1416 * 8.44) ** 2, "c_e": 693.0, "x_e": -0.26}
+    car = TABLE_1_CAR.with_values(**engine, F_f=60.0, F_r=60.0, s_f=3e5, s_r=3e5)
+    result = sprung.identify(sprung.simulate(car, loads=[ON_THE_FLOOR], rate=500.0, duration=3.2, noise=0.02, seed=0))
+    assert result.fit.model == ("engine", "friction")
+    assert result.verdict.state == "accept"
+    assert not result.faults
+    found = result.parameters["m_e"]
+    assert found.std is not None
+    assert found.value == pytest.approx(engine["m_e"], abs=4 * found.std)

@@ -114,7 +114,8 @@ def select_from_beginnings(search: ModelSearch, beginnings: Sequence[Beginning])
             break
         found = _select_from_start(replace(search, steps=best.steps), start)
         best = found if is_likelier(found, best) else replace(best, steps=found.steps)
-        if best.structure.is_nonlinear and not best.lacks_something:
+        # A part that means nothing may stand for another one: for an engine a body that bends around points far outside it.
+        if best.structure.is_nonlinear and not best.lacks_something and all(map(best.needs, best.selected)):
             break
     return best
 
