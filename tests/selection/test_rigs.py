@@ -40,6 +40,10 @@ LIMIT = 1200.0
         pytest.param(184, ("tyre-damping", "friction"), marks=pytest.mark.long, id="drop taken back"),
         pytest.param(180, ("damper-mount", "tyre-curve"), marks=pytest.mark.long, id="delays taken back"),
         pytest.param(166, ("zener", "tyre-curve"), marks=pytest.mark.long, id="place taken back"),
+        # A fit that ended a little beside its optimum seemed to leave what is no more like noise with a tyre that damps.
+        pytest.param(300, ("tyre-damping", "zener", "friction"), marks=pytest.mark.slow, id="damping beside friction"),
+        # Without rubber no law explains much, nor rubber without the law: two vehicles were blamed.
+        pytest.param(306, ("damper-mount", "rebound", "progressive"), marks=pytest.mark.long, id="rubber beside a law"),
     ],
 )
 def test_each_property_is_found_and_no_other(number: int, terms: tuple[str, ...]) -> None:

@@ -20,7 +20,7 @@ from sprung.selection.search import ModelSearch
 from sprung.selection.stepwise import rank_terms
 from sprung.selection.term_fits import begin_nonlinear_fit, fit_term
 from sprung.selection.terms import TERMS
-from sprung.selection.usual_terms import fit_usual_terms, likeliest_or_ordinary
+from sprung.selection.usual_terms import fit_usual_terms, likeliest_or_ordinary, open_usual_terms
 
 _BASES = 2
 """Models from which the search goes on, until one leaves little."""
@@ -63,7 +63,7 @@ def refused_parts(search: ModelSearch) -> list[str]:
 
 
 def likeliest_beginnings(bases: Sequence[ModelSearch], terms: Sequence[str]) -> list[Beginning]:
-    """Take the first steps with what promises most beside each base, and beside each part that was refused.
+    """Take the first steps with what promises most beside each base, each part that was refused, and rubber.
 
     Parameters
     ----------
@@ -78,7 +78,7 @@ def likeliest_beginnings(bases: Sequence[ModelSearch], terms: Sequence[str]) -> 
         The likeliest first.
     """
     found = []
-    for base in (*bases, *_with_refused_parts(bases[-1])):
+    for base in (*bases, *_with_another_part(bases[-1])):
         scored, scores = score_terms(base, terms)
         _, promising = rank_terms(scored, scores, 1.0)
         if promising:
@@ -120,9 +120,10 @@ def select_from_beginnings(search: ModelSearch, beginnings: Sequence[Beginning])
     return best
 
 
-def _with_refused_parts(search: ModelSearch) -> list[ModelSearch]:
-    """Fit each part that was refused, beside nothing."""
-    parts = refused_parts(search)
+def _with_another_part(search: ModelSearch) -> list[ModelSearch]:
+    """Fit each part that was refused, and each linear term that most vehicles have, beside nothing."""
+    usual = [term for term in open_usual_terms(search.structure) if TERMS[term].is_linear and not TERMS[term].refines]
+    parts = [*refused_parts(search), *usual]
     flexible = [term for term in FLEXIBLE_BODIES if term in parts]
     found = fit_flexible_bodies(search, flexible)
     found |= {term: fit_term(search, term) for term in parts if term not in flexible}

@@ -11,7 +11,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import replace
 from math import inf, isfinite
 
-from sprung.estimation import FitResult
+from sprung.estimation import NEAR, FitResult
 from sprung.selection.backward_elimination import counterpart_of, leave_out_unneeded
 from sprung.selection.contact import from_contact
 from sprung.selection.error_budget import MISFIT_LEFT, MISFIT_LEFT_BY_ALL, MISFIT_LEFT_TO_OTHERS
@@ -278,7 +278,10 @@ def _settled(search: ModelSearch, tried: ModelSearch, term: str) -> tuple[ModelS
     if not tried.fit.converged:
         return tried, "the fit with it did not converge"
     if not _is_more_like_noise(search, tried) and tried.structure.is_nonlinear:
-        tried = _with_one_more(search, tried)
+        # A fit that ends a little beside its optimum leaves what is no noise.
+        tried = tried.refit(tried.structure, enough=NEAR)
+        if not _is_more_like_noise(search, tried):
+            tried = _with_one_more(search, tried)
     return tried, "" if _is_more_like_noise(search, tried) else "what is left is no more like noise with it"
 
 
