@@ -176,7 +176,8 @@ def lift_priors(fit: FitResult, names: Sequence[str]) -> dict[str, tuple[float, 
     lifted = {}
     for i, name in ((i, name) for i, name in enumerate(fit.names) if name in names):
         stated, variance = fit.problem.priors.statements[name], float(covariance[i, i])
-        if not variance < (1 - _DETERMINED) * stated.std**2:
+        # Where a motion runs away no direction is determined, and none varies.
+        if not 0 < variance < (1 - _DETERMINED) * stated.std**2:
             continue
         free = variance * stated.std**2 / (stated.std**2 - variance)
         distance = (float(estimate[i]) - stated.value) * free / variance

@@ -23,6 +23,7 @@ from sprung.selection.ordinary_vehicle import ITERATIONS, fit_from_ordinary_vehi
 from sprung.selection.scoring import most_promising
 from sprung.selection.search import ModelSearch
 from sprung.selection.several_vehicles import divide_drops, of_group
+from sprung.selection.starts import fit_structure
 from sprung.selection.structure import ModelStructure
 from sprung.selection.terms import TERMS
 from sprung.selection.unlike_drops import UnlikeDrops
@@ -125,7 +126,24 @@ def select_from_ordinary_vehicle(
     is_flexible = not {*search.selected}.isdisjoint(FLEXIBLE_BODIES)
     if is_flexible or not search.seeks_faults or found.fault is not None or found.structure is not search.structure:
         return found
-    return replace(found, fault=_two_vehicles(search, rich))
+    vehicles = _two_vehicles(search, rich)
+    # A part of the drops may lead to the one vehicle that explains all of them, which all together hid.
+    for _, vehicle in vehicles:
+        start = vehicle.fit.parameters
+        both = fit_structure(
+            vehicle.structure,
+            search.decays,
+            search.fit,
+            search.required_of_switch,
+            search.progress,
+            beginning_only=True,
+            most=ITERATIONS,
+            start=start,
+        )
+        if not search.leaves_misfit(both, MISFIT_LEFT):
+            return _select_beside(found, replace(found, structure=vehicle.structure, fit=both))
+    fault = UnlikeDrops(vehicles[1][0], {}, vehicles[0][0]) if vehicles else None
+    return replace(found, fault=fault)
 
 
 def _with_usual_terms(search: ModelSearch, plain: ModelStructure) -> ModelStructure:
@@ -135,16 +153,17 @@ def _with_usual_terms(search: ModelSearch, plain: ModelStructure) -> ModelStruct
     return plain.with_terms((*plain.terms, *flexible, *terms)) if terms else plain
 
 
-def _two_vehicles(search: ModelSearch, rich: ModelStructure) -> UnlikeDrops | None:
-    """Return the drops of another vehicle, where two with every usual term explain what one does not."""
+def _two_vehicles(search: ModelSearch, rich: ModelStructure) -> list[tuple[tuple[str, ...], ModelSearch]]:
+    """Return two groups of drops with a vehicle for each, where two with every usual term explain what one does not."""
     search.progress(Step("dividing the drops between two vehicles"))
-    groups = divide_drops(search, partly=True)
-    for group in groups or ():
+    vehicles = []
+    for group in divide_drops(search, partly=True) or ():
         own = of_group(search, group)
         found = fit_usual_terms(own, rich, with_lost=False)
         if found is None or own.leaves_misfit(found.fit, MISFIT_LEFT):
-            return None
-    return None if groups is None else UnlikeDrops(groups[1], {}, groups[0])
+            return []
+        vehicles.append((group, found))
+    return vehicles
 
 
 def select_beside_usual_terms(
@@ -175,6 +194,11 @@ def select_beside_usual_terms(
         against = "together they do not explain what the model so far leaves"
         terms = [term for term in rich.terms if TERMS[term].usual is not None]
         return search.recorded(dict.fromkeys(terms, 0.0), True, False, against)
+    return _select_beside(search, found)
+
+
+def _select_beside(search: ModelSearch, found: ModelSearch) -> ModelSearch:
+    """Return a model that explains the recordings without terms that are not needed, and with further ones beside it."""
     found = _without_unneeded(found)
     if not np.isfinite(found.fit.loglikelihood):
         against = "without the terms that are not needed beside it the motion has no bounds"
