@@ -45,7 +45,9 @@ LIMIT = 1200.0
         # Without rubber no law explains much, nor rubber without the law: two vehicles were blamed.
         pytest.param(306, ("damper-mount", "rebound", "progressive"), marks=pytest.mark.long, id="rubber beside a law"),
         # Two vehicles were blamed, each of which explained its drops: from where one of them ends, it explains all.
-        pytest.param(320, ("friction", "damper-curve", "tyre-curve"), marks=pytest.mark.long, id="one vehicle, not two"),
+        pytest.param(
+            320, ("friction", "damper-curve", "tyre-curve"), marks=pytest.mark.long, id="one vehicle, not two"
+        ),
     ],
 )
 def test_each_property_is_found_and_no_other(number: int, terms: tuple[str, ...]) -> None:
