@@ -37,6 +37,7 @@ def main() -> None:
     parser.add_argument("--add", action="store_true", help="keep the kinds in real-cars.json that are not run")
     parser.add_argument("--limit", type=float, default=LIMIT, help="s of processor time for each (default %(default)g)")
     options = parser.parse_args()
+    before = json.loads((options.to / "real-cars.json").read_text()) if options.add else None
     seeds = [range(i, min(i + TOGETHER, options.campaigns)) for i in range(0, options.campaigns, TOGETHER)]
     tasks = [(kind, some, options.limit) for kind in options.kinds for some in seeds]
     outcomes: list[Outcome] = []
@@ -49,8 +50,8 @@ def main() -> None:
         "campaigns": [campaign_document(one) for one in outcomes],
         "notes": [],
     }
-    if options.add:
-        numbers = merged(json.loads((options.to / "real-cars.json").read_text()), numbers)
+    if before is not None:
+        numbers = merged(before, numbers)
     drawn = draw(numbers, options.to / "real-cars.svg")
     write(options.to, "real-cars", page(numbers, drawn), numbers, made_by="")
 
