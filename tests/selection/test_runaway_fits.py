@@ -33,7 +33,7 @@ LIGHTLY_DAMPED = Vehicle(
     t_f=0.524,
     t_r=0.703,
 )
-"""Of a damping ratio of 3 to 4 %, the front stiffer than the rear by more than four: a rig may be like that."""
+"""Of a damping ratio of 5 %, the front stiffer than the rear by more than four: a rig may be like that."""
 
 
 def linear_search(campaign: sprung.Campaign) -> ModelSearch:

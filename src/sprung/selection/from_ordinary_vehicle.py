@@ -7,7 +7,7 @@ priors, so that a term of which the records say little keeps the size that it us
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -27,7 +27,12 @@ from sprung.selection.starts import fit_structure
 from sprung.selection.structure import ModelStructure
 from sprung.selection.terms import TERMS
 from sprung.selection.unlike_drops import UnlikeDrops
-from sprung.selection.usual_terms import begin_with_usual_terms, fit_usual_terms, open_usual_terms
+from sprung.selection.usual_terms import (
+    begin_with_usual_terms,
+    fit_usual_terms,
+    open_usual_linear_terms,
+    open_usual_terms,
+)
 
 
 def or_with_usual_linear_terms(search: ModelSearch) -> ModelSearch:
@@ -70,7 +75,7 @@ def fit_usual_linear_terms(search: ModelSearch) -> ModelSearch:
     ModelSearch
         As given where there is none.
     """
-    usual = [term for term in open_usual_terms(search.structure) if TERMS[term].is_linear and not TERMS[term].refines]
+    usual = open_usual_linear_terms(search.structure)
     if not usual:
         return search
     search.progress(Step(f"fitting an ordinary vehicle with {', '.join(usual)}"))
@@ -127,21 +132,8 @@ def select_from_ordinary_vehicle(
     if is_flexible or not search.seeks_faults or found.fault is not None or found.structure is not search.structure:
         return found
     vehicles = _two_vehicles(search, rich)
-    # A part of the drops may lead to the one vehicle that explains all of them, which all together hid.
-    for _, vehicle in vehicles:
-        start = vehicle.fit.parameters
-        both = fit_structure(
-            vehicle.structure,
-            search.decays,
-            search.fit,
-            search.required_of_switch,
-            search.progress,
-            beginning_only=True,
-            most=ITERATIONS,
-            start=start,
-        )
-        if not search.leaves_misfit(both, MISFIT_LEFT):
-            return _select_beside(found, replace(found, structure=vehicle.structure, fit=both))
+    if (one := _one_of_them(search, vehicles)) is not None:
+        return _select_beside(found, replace(one, steps=found.steps))
     fault = UnlikeDrops(vehicles[1][0], {}, vehicles[0][0]) if vehicles else None
     return replace(found, fault=fault)
 
@@ -164,6 +156,24 @@ def _two_vehicles(search: ModelSearch, rich: ModelStructure) -> list[tuple[tuple
             return []
         vehicles.append((group, found))
     return vehicles
+
+
+def _one_of_them(search: ModelSearch, vehicles: Sequence[tuple[tuple[str, ...], ModelSearch]]) -> ModelSearch | None:
+    """Return one vehicle for all drops, where that of a part of them leads to it: all together may have hidden it."""
+    for _, vehicle in vehicles:
+        fit = fit_structure(
+            vehicle.structure,
+            search.decays,
+            search.fit,
+            search.required_of_switch,
+            search.progress,
+            beginning_only=True,
+            most=ITERATIONS,
+            start=vehicle.fit.parameters,
+        )
+        if not search.leaves_misfit(fit, MISFIT_LEFT):
+            return replace(search, structure=vehicle.structure, fit=fit)
+    return None
 
 
 def select_beside_usual_terms(

@@ -20,7 +20,7 @@ from sprung.selection.search import ModelSearch
 from sprung.selection.stepwise import rank_terms
 from sprung.selection.term_fits import begin_nonlinear_fit, fit_term
 from sprung.selection.terms import TERMS
-from sprung.selection.usual_terms import fit_usual_terms, likeliest_or_ordinary, open_usual_terms
+from sprung.selection.usual_terms import fit_usual_terms, likeliest_or_ordinary, open_usual_linear_terms
 
 _BASES = 2
 """Models from which the search goes on, until one leaves little."""
@@ -122,8 +122,7 @@ def select_from_beginnings(search: ModelSearch, beginnings: Sequence[Beginning])
 
 def _with_another_part(search: ModelSearch) -> list[ModelSearch]:
     """Fit each part that was refused, and each linear term that most vehicles have, beside nothing."""
-    usual = [term for term in open_usual_terms(search.structure) if TERMS[term].is_linear and not TERMS[term].refines]
-    parts = [*refused_parts(search), *usual]
+    parts = [*refused_parts(search), *open_usual_linear_terms(search.structure)]
     flexible = [term for term in FLEXIBLE_BODIES if term in parts]
     found = fit_flexible_bodies(search, flexible)
     found |= {term: fit_term(search, term) for term in parts if term not in flexible}

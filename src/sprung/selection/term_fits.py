@@ -135,8 +135,8 @@ def take_first_step(search: ModelSearch, term: str) -> tuple[ModelSearch, float]
             return replace(search, structure=larger, fit=early), -np.inf
     first = search.refit(larger, most=1)
     # A motion without bounds, or so far from the records that all of it would have to be found anew.
-    is_astray = search.structure.is_nonlinear and search.is_better_than(first.fit)
-    if is_astray or not np.isfinite(first.fit.loglikelihood):
+    is_far_off = search.structure.is_nonlinear and search.is_better_than(first.fit)
+    if is_far_off or not np.isfinite(first.fit.loglikelihood):
         return first, -np.inf
     if first.fit.loglikelihood < search.fit.loglikelihood:
         first = first.refit(first.structure, most=_STEPS_FROM_BELOW)

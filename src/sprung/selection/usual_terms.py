@@ -27,6 +27,18 @@ def open_usual_terms(structure: ModelStructure) -> tuple[str, ...]:
     return tuple(term for term in structure.open_terms if TERMS[term].usual is not None and term not in structure.terms)
 
 
+def open_usual_linear_terms(structure: ModelStructure) -> tuple[str, ...]:
+    """Return those of `open_usual_terms` that are linear and need no other term: rubber, and tyres that damp.
+
+    Parameters
+    ----------
+    structure
+        The model, which does not have them.
+    """
+    terms = open_usual_terms(structure)
+    return tuple(term for term in terms if TERMS[term].is_linear and not TERMS[term].refines)
+
+
 def begin_with_usual_terms(search: ModelSearch, rich: ModelStructure) -> ModelSearch:
     """Take the first steps of `fit_usual_terms`, which show how much of the misfit it may explain.
 
